@@ -1,0 +1,2 @@
+//! The `tyndall` command.
+fn main() {}

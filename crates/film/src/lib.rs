@@ -1,0 +1,1 @@
+//! Samples become an image with its error.

@@ -1,0 +1,1 @@
+//! Phase functions and coefficients of participating media. Knows no geometry.

@@ -1,0 +1,1 @@
+//! What is rendered: camera, film, media, lights; the native TOML scene file.

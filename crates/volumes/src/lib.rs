@@ -1,0 +1,12 @@
+//! Volume files and sparse brick grids. Knows no light.
+//!
+//! The way of the data: a file is read into [`Grid`]s (one leaf an 8³ block of an OpenVDB tree, exactly as the
+//! file has it), and a grid is built into bricks made for tracking rays.
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod grid;
+
+pub use error::ReadError;
+pub use grid::{Grid, GridClass, GridValues, Leaf, Tile, Tree, LEAF_EDGE, LEAF_VOXELS};
