@@ -1,2 +1,10 @@
 //! Numbers for light transport: counter-based random numbers and elementary functions that give the
 //! same bits on every machine. Knows no rendering.
+
+#![forbid(unsafe_code)]
+
+mod elementary;
+mod random;
+
+pub use elementary::{exp, ln, sin_cos_turns};
+pub use random::Random;
