@@ -5,8 +5,10 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bricks;
 mod error;
 mod grid;
 
+pub use bricks::{BrickGrid, Storage};
 pub use error::ReadError;
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};

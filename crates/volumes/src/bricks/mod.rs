@@ -1,0 +1,107 @@
+//! A scalar grid made for tracking rays: sparse 8³ bricks, one for each leaf of the file, under bounds.
+//!
+//! # Layout
+//! Three levels are usual. A dense *top table* over the grid's box has a cell for each 32³ voxels; a cell is a
+//! constant, or a *node* of 4³ cells of 8³ voxels; such a cell is a constant or a *brick* of 512 voxels. Where
+//! the box is so large that the table would pass 2^18 cells, the top cells are 128³, 512³, … voxels and the nodes
+//! nest, so that a constant tile of 4096³ voxels stays a handful of cells.
+//!
+//! Every cell is one word of 8 bytes: what is there, and the least and greatest value that the *trilinearly
+//! filtered* field takes inside it, each as a bfloat16 rounded outwards (0.4 % loose at most). One load thus tells
+//! a tracker both the majorant and where to look next; a cell whose maximum is 0 is skipped whole.
+//!
+//! # Filter
+//! Index space is OpenVDB's: integers are voxel centres. The cell that starts at voxel `b` is the region
+//! [b, b + edge)³, whose trilinear values are mixtures of the voxels b … b + edge. Bounds are taken over those, so
+//! the footprint reaches one voxel beyond a cell on its upper sides only. One voxel, drawn with its trilinear
+//! weight as `floor(p + u)` with u uniform in [0, 1)³, is an unbiased estimate of the filtered value at `p`.
+//!
+//! # Values
+//! Stored as f32; as f16 scaled by a power of two (relative error 2^-11, exact for half files whose range fits);
+//! or as u8 with an offset and a step of its own in each brick (error at most 1/510 of the brick's range).
+//! Non-finite values become 0 and are counted.
+//!
+//! # Memory
+//! Per brick 512, 1024 or 2048 bytes (u8, f16, f32) and 8 bytes for its cell (u8: 8 more for offset and step); per
+//! node 512 bytes; per top cell 8 bytes. A cloud whose nodes are half full pays 3 % over its bricks in f16;
+//! measured on the 415,642-voxel Disney cloud: see `memory_stays_near_the_bricks` in the tests.
+
+mod bounds;
+mod build;
+mod lookup;
+mod storage;
+mod traverse;
+
+pub use bounds::Bounds;
+pub use build::BuildError;
+pub use lookup::Cell;
+pub use storage::{BrickValues, Bricks, F16Bricks, F32Bricks, Storage, U8Bricks};
+pub use traverse::Segment;
+
+use bounds::Entry;
+use glam::DVec3;
+
+/// A scalar field on a sparse grid, with bounds; see the module head.
+#[derive(Debug, Clone)]
+pub struct BrickGrid {
+    /// Voxel of the least corner of the top table.
+    origin: [i32; 3],
+    /// Top cells along each axis.
+    top_dimensions: [u32; 3],
+    /// Base-2 logarithm of the edge of a top cell in voxels: 5, 7, 9, …
+    top_shift: u32,
+    /// The top table, x slowest, followed by the nodes of 64 cells each.
+    entries: Vec<Entry>,
+    /// Values of constant cells.
+    constants: Vec<f32>,
+    bricks: Bricks,
+    /// Where the field may differ from the background, in index coordinates.
+    domain: [DVec3; 2],
+    background: f32,
+    /// Bounds of the filtered field over the domain.
+    bounds: Bounds,
+    non_finite: u64,
+}
+
+impl BrickGrid {
+    /// Least and greatest corner, in index coordinates, of the region that rays need to look at.
+    ///
+    /// With background 0 this is the box of active voxels and one voxel around it, where the filtered field fades
+    /// out. With another background, which would fill all space, the field is cut at the faces of the active
+    /// voxels.
+    pub fn domain(&self) -> [DVec3; 2] {
+        self.domain
+    }
+
+    /// Value of voxels outside the tree.
+    pub fn background(&self) -> f32 {
+        self.background
+    }
+
+    /// Least and greatest filtered value in the domain (rounded outwards to bfloat16).
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Number of values that were NaN or infinite in the file and are 0 here.
+    pub fn non_finite(&self) -> u64 {
+        self.non_finite
+    }
+
+    /// The bricks, for kernels that are compiled for one storage.
+    pub fn bricks(&self) -> &Bricks {
+        &self.bricks
+    }
+
+    /// Number of bricks.
+    pub fn brick_count(&self) -> usize {
+        self.bricks.count()
+    }
+
+    /// Bytes of the whole structure.
+    pub fn memory_bytes(&self) -> usize {
+        self.bricks.memory_bytes()
+            + std::mem::size_of_val(&self.entries[..])
+            + std::mem::size_of_val(&self.constants[..])
+    }
+}

@@ -1,0 +1,76 @@
+//! A ray through the grid as segments between bounds.
+
+use super::{Bounds, BrickGrid};
+use glam::DVec3;
+use std::ops::ControlFlow;
+
+/// A stretch of a ray inside one cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Parameter of the ray where the stretch starts.
+    pub start: f64,
+    /// Parameter where it ends.
+    pub end: f64,
+    /// Bounds of the filtered field along it.
+    pub bounds: Bounds,
+}
+
+impl BrickGrid {
+    /// Calls `visit` with each segment of the ray `origin + t·direction` (index coordinates, any length of
+    /// `direction`) for `t` in [start, end], in order and without gaps inside the grid's domain, until `visit`
+    /// breaks.
+    ///
+    /// Large constant cells are single segments, so empty space costs a step for each 32 voxels or more.
+    pub fn segments<B>(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        (start, end): (f64, f64),
+        mut visit: impl FnMut(Segment) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let inverse = direction.recip();
+        let Some((mut t, end)) = clip(self.domain, origin, inverse, (start, end)) else {
+            return ControlFlow::Continue(());
+        };
+        let table = DVec3::new(self.origin[0].into(), self.origin[1].into(), self.origin[2].into());
+        let local_origin = origin - table;
+        // A point this little further along the ray decides which cell comes next.
+        let nudge = 1e-9 / direction.abs().max_element();
+        while t < end {
+            let inside = local_origin + direction * (t + nudge.max(t.abs() * 1e-15));
+            let voxel = inside.max(DVec3::ZERO).as_uvec3().to_array();
+            let cell = self.cell(voxel);
+            let edge = f64::from(1_u32 << cell.shift);
+            let mut exit = end;
+            for axis in 0..3 {
+                let far = f64::from(cell.corner[axis]) + if direction[axis] > 0.0 { edge } else { 0.0 };
+                if direction[axis] != 0.0 {
+                    exit = exit.min((far - local_origin[axis]) * inverse[axis]);
+                }
+            }
+            let exit = exit.max(t + nudge).min(end);
+            visit(Segment { start: t, end: exit, bounds: self.cell_bounds(voxel) })?;
+            t = exit;
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// The part of `range` in which the ray is inside the box (slab method), if any.
+fn clip(corners: [DVec3; 2], origin: DVec3, inverse: DVec3, range: (f64, f64)) -> Option<(f64, f64)> {
+    let (mut start, mut end) = range;
+    for axis in 0..3 {
+        let (low, high) = (corners[0][axis], corners[1][axis]);
+        if inverse[axis].is_infinite() {
+            if origin[axis] < low || origin[axis] > high {
+                return None;
+            }
+            continue;
+        }
+        let a = (low - origin[axis]) * inverse[axis];
+        let b = (high - origin[axis]) * inverse[axis];
+        start = start.max(a.min(b));
+        end = end.min(a.max(b));
+    }
+    (start < end).then_some((start, end))
+}
