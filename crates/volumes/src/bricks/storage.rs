@@ -83,7 +83,8 @@ fn half_times(half: u16, factor: f32) -> f32 {
 }
 
 impl Bricks {
-    /// Empty storage for `count` bricks whose values all lie within `bounds`.
+    /// Empty storage for `count` bricks whose values all lie within `bounds`; values of 2^30 and above are past
+    /// what scaled halves reach and are kept as f32.
     pub(super) fn new(storage: Storage, count: usize, bounds: Bounds) -> Bricks {
         match storage {
             Storage::U8 => Bricks::U8(U8Bricks {
@@ -94,7 +95,9 @@ impl Bricks {
                 halves: Vec::with_capacity(count * LEAF_VOXELS),
                 factor: half_factor(bounds),
             }),
-            Storage::F32 => Bricks::F32(F32Bricks { values: Vec::with_capacity(count * LEAF_VOXELS) }),
+            Storage::F16 | Storage::F32 => {
+                Bricks::F32(F32Bricks { values: Vec::with_capacity(count * LEAF_VOXELS) })
+            }
         }
     }
 
@@ -150,14 +153,21 @@ impl Bricks {
     }
 }
 
+/// Values from here on do not fit [`F16Bricks`]: the factor would pass f32's range.
+const HALF_LIMIT: f32 = (1_u32 << 30) as f32;
+
+fn largest_magnitude(bounds: Bounds) -> f32 {
+    bounds.min.abs().max(bounds.max.abs())
+}
+
 /// The factor of [`F16Bricks`] for values within `bounds`: no scaling where the range fits well, otherwise the
 /// power of two that brings the largest magnitude into [2^14, 2^15).
 fn half_factor(bounds: Bounds) -> f32 {
-    let largest = bounds.min.abs().max(bounds.max.abs());
+    let largest = largest_magnitude(bounds);
     let exponent = if largest > 0.0 && largest.is_finite() { largest.log2().floor() as i32 } else { 0 };
     // Between 2^-3 and 2^15 halves resolve the range to 2^-21 of its largest value without help.
-    let scale = if (-3..15).contains(&exponent) { 0 } else { (exponent - 14).clamp(-126 - 112, 15) };
-    2.0_f32.powi(56) * 2.0_f32.powi(56 + scale)
+    let scale = if (-3..15).contains(&exponent) { 0 } else { exponent - 14 };
+    2.0_f32.powi(112 + scale)
 }
 
 #[cfg(test)]
