@@ -91,7 +91,7 @@ impl Bricks {
                 codes: Vec::with_capacity(count * LEAF_VOXELS),
                 affine: Vec::with_capacity(count),
             }),
-            Storage::F16 => Bricks::F16(F16Bricks {
+            Storage::F16 if largest_magnitude(bounds) < HALF_LIMIT => Bricks::F16(F16Bricks {
                 halves: Vec::with_capacity(count * LEAF_VOXELS),
                 factor: half_factor(bounds),
             }),
