@@ -45,6 +45,13 @@ impl Film {
         self.pixel_standard_error(self.index(x, y), self.sample_count(x, y))
     }
 
+    /// Number of samples a pixel, the mean of all pixels.
+    pub fn mean_sample_count(&self) -> f64 {
+        let mut total = 0.0;
+        self.for_each_pixel(|_, n| total += n as f64);
+        total / self.sums.pixels.len() as f64
+    }
+
     /// Mean of all pixels, and its standard error (pixels are independent).
     pub fn image_mean(&self) -> [Estimate; 3] {
         let (mut sum, mut variance) = ([0.0; 3], [0.0; 3]);
