@@ -1,1 +1,36 @@
-//! Samples become an image with its error.
+//! Samples become an image with its error. Knows pixels, not light paths.
+//!
+//! The way of the data: transport fills a [`FilmTile`] with [`Sample`]s, the [`Film`] takes the tiles up into exact
+//! sums, and the sums are developed into channels with their standard error, which go to [EXR](write_exr) and
+//! [PNG](write_png) files and into a [`Summary`].
+
+#![forbid(unsafe_code)]
+
+mod accumulation_file;
+mod atomic_write;
+mod error;
+mod estimates;
+mod exr_file;
+mod film;
+mod fixed_point;
+mod metadata;
+mod plane_codec;
+mod png_file;
+mod ranges;
+mod sample;
+mod summary;
+mod sums;
+mod tone_map;
+
+pub use accumulation_file::Accumulation;
+pub use atomic_write::write_atomically;
+pub use error::FileError;
+pub use estimates::{Channel, Estimate, LUMINANCE};
+pub use exr_file::write_exr;
+pub use film::{Film, FilmTile, MAX_PIXELS, MergeError, Rect, SizeError, TILE_EDGE};
+pub use metadata::ImageMetadata;
+pub use png_file::write_png;
+pub use ranges::{RangeError, SampleRanges};
+pub use sample::{Layers, Sample};
+pub use summary::Summary;
+pub use tone_map::{srgb_signal, tone_map};

@@ -1,0 +1,260 @@
+//! `.acc` files: the exact sums of a film, to be continued or merged later.
+//!
+//! All numbers little-endian:
+//!
+//! ```text
+//! 8 bytes   "TYNDALL\x1a"
+//! u32       version of the format, 1
+//! u32       length of the header in bytes
+//! header    JSON: size, layers, planes, ranges of samples, progress of an interrupted pass, metadata
+//! blocks    for each plane, every 4096 pixels: u32 length, then LZ4 (block format)
+//! u32       CRC-32 (of zlib) of all that stands before it
+//! ```
+//!
+//! A plane holds one record a pixel: `pixels` 128 bytes (Σx of R, G, B as i128; Σx² of R, G, B as 192 bits; u64
+//! hits), `depth` 16, `albedo` 24, `emission`, `single` and `multiple` 48. Planes of zeros are left out. Before
+//! compression the bytes of a block are transposed, all first bytes of its records, then all second ones: the high
+//! bytes of neighbouring sums are equal, most of them zero, and compress well.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::atomic_write::write_atomically;
+use crate::error::FileError;
+use crate::film::{Film, MergeError, OpenPass, pixel_count, tile_count};
+use crate::fixed_point::MAX_SAMPLES;
+use crate::metadata::ImageMetadata;
+use crate::plane_codec::{decode_plane, encode_plane};
+use crate::ranges::{RangeError, SampleRanges};
+use crate::sample::Layers;
+use crate::sums::Sums;
+
+const MAGIC: &[u8; 8] = b"TYNDALL\x1a";
+const VERSION: u32 = 1;
+
+/// A film and how its samples were made: what an `.acc` file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Accumulation {
+    /// The sums.
+    pub film: Film,
+    /// Which picture they are of.
+    pub metadata: ImageMetadata,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    width: u32,
+    height: u32,
+    layers: Layers,
+    planes: Vec<Plane>,
+    samples: SampleRanges,
+    open: Option<OpenHeader>,
+    rejected: u64,
+    metadata: ImageMetadata,
+}
+
+#[derive(Serialize, Deserialize)]
+struct OpenHeader {
+    start: u64,
+    done: Vec<u64>,
+}
+
+#[derive(Serialize, Deserialize, Clone, Copy, PartialEq, Eq, Debug)]
+#[serde(rename_all = "lowercase")]
+enum Plane {
+    Pixels,
+    Depth,
+    Albedo,
+    Emission,
+    Single,
+    Multiple,
+}
+
+impl Accumulation {
+    /// Writes an `.acc` file.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        write_atomically(path, |file| self.encode(file))
+    }
+
+    /// Reads an `.acc` file.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let bytes = std::fs::read(path).map_err(|e| FileError::io(path, e))?;
+        Self::decode(&bytes).map_err(|what| FileError::unusable(path, what))
+    }
+
+    /// Adds the samples of `other`. The paths only serve to name both in an error; nothing changes on error.
+    pub fn merge(&mut self, path: &Path, other: &Self, other_path: &Path) -> Result<(), FileError> {
+        let refuse = |what: String| FileError::unusable(other_path, what);
+        let (mine, theirs) = (&self.metadata, &other.metadata);
+        for (name, a, b) in [
+            ("scene", &mine.scene_hash, &theirs.scene_hash),
+            ("version of tyndall", &mine.version, &theirs.version),
+            ("options", &mine.options, &theirs.options),
+            ("seed", &mine.seed.to_string(), &theirs.seed.to_string()),
+        ] {
+            if a != b {
+                return Err(refuse(format!(
+                    "cannot be merged with {}: another {name} (`{b}`, not `{a}`); only renders of one scene with \
+                     the same seed and options add up",
+                    path.display()
+                )));
+            }
+        }
+        self.film.merge(&other.film).map_err(|error| match error {
+            MergeError::Ranges(RangeError::Overlap(common)) => refuse(format!(
+                "cannot be merged with {}: both hold samples {}..{}; leave one of them out",
+                path.display(),
+                common.start,
+                common.end
+            )),
+            MergeError::Incomplete(start) => {
+                let open = if self.film.open_start().is_some() { path } else { other_path };
+                FileError::unusable(
+                    open,
+                    format!("was interrupted in the pass that begins at sample {start}; resume it to its end first"),
+                )
+            }
+            error => refuse(format!("cannot be merged with {}: {error}", path.display())),
+        })?;
+        self.metadata.seconds += other.metadata.seconds;
+        Ok(())
+    }
+
+    fn encode(&self, file: &mut impl Write) -> io::Result<()> {
+        let film = &self.film;
+        let sums = &film.sums;
+        let planes = [
+            (Plane::Pixels, true),
+            (Plane::Depth, !sums.depth.is_empty()),
+            (Plane::Albedo, !sums.albedo.is_empty()),
+            (Plane::Emission, !sums.emission.is_empty()),
+            (Plane::Single, !sums.single.is_empty()),
+            (Plane::Multiple, !sums.multiple.is_empty()),
+        ];
+        let header = Header {
+            width: film.width,
+            height: film.height,
+            layers: film.layers,
+            planes: planes.iter().filter(|(_, present)| *present).map(|(plane, _)| *plane).collect(),
+            samples: film.complete.clone(),
+            open: film.open.as_ref().map(|pass| OpenHeader { start: pass.start, done: pass.done.clone() }),
+            rejected: film.rejected,
+            metadata: self.metadata.clone(),
+        };
+        let json = serde_json::to_vec(&header)?;
+        let length = u32::try_from(json.len()).map_err(io::Error::other)?;
+        let mut file = ChecksumWriter { inner: file, crc: flate2::Crc::new() };
+        file.write_all(MAGIC)?;
+        file.write_all(&VERSION.to_le_bytes())?;
+        file.write_all(&length.to_le_bytes())?;
+        file.write_all(&json)?;
+        for plane in header.planes {
+            match plane {
+                Plane::Pixels => encode_plane(&mut file, &sums.pixels)?,
+                Plane::Depth => encode_plane(&mut file, &sums.depth)?,
+                Plane::Albedo => encode_plane(&mut file, &sums.albedo)?,
+                Plane::Emission => encode_plane(&mut file, &sums.emission)?,
+                Plane::Single => encode_plane(&mut file, &sums.single)?,
+                Plane::Multiple => encode_plane(&mut file, &sums.multiple)?,
+            }
+        }
+        let sum = file.crc.sum();
+        file.inner.write_all(&sum.to_le_bytes())
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, String> {
+        const DAMAGED: &str = "is damaged or cut short; copy it again or render its samples anew";
+        if !bytes.starts_with(MAGIC) {
+            return Err("is no .acc file of tyndall".into());
+        }
+        let (content, checksum) = bytes.split_last_chunk::<4>().ok_or(DAMAGED)?;
+        let mut crc = flate2::Crc::new();
+        crc.update(content);
+        if crc.sum() != u32::from_le_bytes(*checksum) {
+            return Err(DAMAGED.into());
+        }
+        let (version, rest) = content[MAGIC.len()..].split_first_chunk().ok_or(DAMAGED)?;
+        let version = u32::from_le_bytes(*version);
+        if version != VERSION {
+            return Err(format!(
+                "has version {version} of the .acc format, and this program reads version {VERSION}; use the \
+                 program that wrote it"
+            ));
+        }
+        let (length, rest) = rest.split_first_chunk().ok_or(DAMAGED)?;
+        let (json, mut blocks) =
+            rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(DAMAGED)?;
+        let header: Header = serde_json::from_slice(json).map_err(|e| format!("has a bad header: {e}"))?;
+        let film = header.film(&mut blocks)?;
+        if !blocks.is_empty() {
+            return Err(format!("has {} bytes too many after its sums", blocks.len()));
+        }
+        Ok(Self { film, metadata: header.metadata })
+    }
+}
+
+impl Header {
+    /// The film, its sums read from `blocks`.
+    fn film(&self, blocks: &mut &[u8]) -> Result<Film, String> {
+        let count = pixel_count(self.width, self.height).map_err(|e| format!("has a bad header: {e}"))?;
+        let mut sums = Sums::default();
+        for plane in &self.planes {
+            match plane {
+                Plane::Pixels => decode_plane(blocks, &mut sums.pixels, count),
+                Plane::Depth => decode_plane(blocks, &mut sums.depth, count),
+                Plane::Albedo => decode_plane(blocks, &mut sums.albedo, count),
+                Plane::Emission => decode_plane(blocks, &mut sums.emission, count),
+                Plane::Single => decode_plane(blocks, &mut sums.single, count),
+                Plane::Multiple => decode_plane(blocks, &mut sums.multiple, count),
+            }
+            .map_err(|what| format!("has a bad plane {plane:?}: {what}"))?;
+        }
+        if sums.pixels.is_empty() {
+            return Err("has a bad header: the plane of pixels is missing".into());
+        }
+        Ok(Film {
+            width: self.width,
+            height: self.height,
+            layers: self.layers,
+            sums,
+            complete: self.samples.clone(),
+            open: self.open.as_ref().map(|open| self.open_pass(open)).transpose()?,
+            rejected: self.rejected,
+        })
+    }
+
+    fn open_pass(&self, open: &OpenHeader) -> Result<OpenPass, String> {
+        if open.done.len() != tile_count(self.width, self.height) {
+            return Err("has a bad header: its progress has the wrong number of tiles".into());
+        }
+        let most = open.done.iter().copied().max().unwrap_or(0);
+        let end = open.start.checked_add(most).filter(|_| most <= MAX_SAMPLES);
+        let end = end.ok_or("has a bad header: its progress is impossible")?;
+        let range = self.samples.clone().insert(open.start..end);
+        range.map_err(|e| format!("has a bad header: {e}"))?;
+        Ok(OpenPass { start: open.start, done: open.done.clone() })
+    }
+}
+
+/// Passes bytes on and keeps their checksum.
+struct ChecksumWriter<'a, W> {
+    inner: &'a mut W,
+    crc: flate2::Crc,
+}
+
+impl<W: Write> Write for ChecksumWriter<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.crc.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests;

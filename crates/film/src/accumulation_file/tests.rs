@@ -1,0 +1,159 @@
+//! An `.acc` file gives back the same bits, or one clear line.
+
+use std::ops::Range;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::film::FilmTile;
+use crate::sample::Sample;
+
+fn metadata() -> ImageMetadata {
+    ImageMetadata {
+        scene_hash: "0123".into(),
+        version: "0.1.0".into(),
+        options: "integrator=fast".into(),
+        seed: 7,
+        seconds: 2.0,
+    }
+}
+
+fn rendered(samples: Range<u64>, tiles: Range<usize>) -> Film {
+    let mut film = Film::new(40, 17, Layers::ALL).unwrap();
+    film.open_range(samples.start).unwrap();
+    for number in tiles {
+        let rect = film.tile_rect(number);
+        let mut tile = FilmTile::new(rect, samples.clone(), film.layers());
+        for index in samples.clone() {
+            for y in rect.y..rect.y + rect.height {
+                for x in rect.x..rect.x + rect.width {
+                    let u = (x * 31 + y * 17 + index as u32 * 7) as f32 % 10.1;
+                    let radiance = [u, u * 1e-7, u * 1e6];
+                    let single = radiance.map(|r| r * 0.5);
+                    let hit = index % 2 == 0;
+                    tile.add(x, y, &Sample { radiance, hit, depth: u, single, ..Sample::default() });
+                }
+            }
+        }
+        film.merge_tile(&tile);
+    }
+    film
+}
+
+fn complete(samples: Range<u64>) -> Accumulation {
+    let mut film = rendered(samples.clone(), 0..6);
+    film.complete_through(samples.end).unwrap();
+    Accumulation { film, metadata: metadata() }
+}
+
+fn bytes_of(accumulation: &Accumulation) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    accumulation.encode(&mut bytes).unwrap();
+    bytes
+}
+
+/// Sets the checksum right, so that damage reaches what lies behind it.
+fn with_right_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len() - 4;
+    let mut crc = flate2::Crc::new();
+    crc.update(&bytes[..end]);
+    bytes[end..].copy_from_slice(&crc.sum().to_le_bytes());
+    bytes
+}
+
+#[test]
+fn halves_merged_from_files_are_the_whole_bit_for_bit_in_either_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let [a, b, c] = ["a.acc", "b.acc", "c.acc"].map(|name| folder.path().join(name));
+    complete(0..64).write(&a).unwrap();
+    complete(64..128).write(&b).unwrap();
+    let whole = complete(0..128);
+    for (first, second) in [(&a, &b), (&b, &a)] {
+        let mut merged = Accumulation::read(first).unwrap();
+        merged.merge(first, &Accumulation::read(second).unwrap(), second).unwrap();
+        merged.write(&c).unwrap();
+        let merged = Accumulation::read(&c).unwrap();
+        assert_eq!(merged.film, whole.film);
+        assert_eq!(merged.metadata.seconds, 4.0);
+    }
+}
+
+#[test]
+fn an_interrupted_film_comes_back_with_the_progress_of_each_tile() {
+    let film = rendered(5..8, 2..4);
+    let read =
+        Accumulation::decode(&bytes_of(&Accumulation { film: film.clone(), metadata: metadata() })).unwrap();
+    assert_eq!(read.film, film);
+    assert_eq!((read.film.next_sample(0), read.film.next_sample(3)), (Some(5), Some(8)));
+}
+
+#[test]
+fn each_reason_not_to_merge_is_one_line_that_names_both_files() {
+    let refusal = |change: &dyn Fn(&mut Accumulation)| {
+        let mut other = complete(2..4);
+        change(&mut other);
+        let mut whole = complete(0..2);
+        let error = whole.merge("a.acc".as_ref(), &other, "b.acc".as_ref()).unwrap_err().to_string();
+        assert_eq!(whole, complete(0..2), "a refused merge changes nothing");
+        assert!(error.contains("b.acc") && !error.contains('\n'), "{error}");
+        error
+    };
+    let scene = refusal(&|other| other.metadata.scene_hash = "4567".into());
+    assert!(scene.contains("a.acc") && scene.contains("another scene (`4567`, not `0123`)"), "{scene}");
+    assert!(refusal(&|other| other.metadata.seed = 8).contains("another seed"));
+    assert!(refusal(&|other| other.metadata.options.clear()).contains("another options"));
+    assert!(refusal(&|other| other.metadata.version.push('1')).contains("another version"));
+    assert!(refusal(&|other| *other = complete(1..3)).contains("both hold samples 1..2"));
+    assert!(refusal(&|other| other.film = rendered(2..4, 0..3)).contains("was interrupted"));
+    let size = refusal(&|other| other.film = Film::new(8, 8, Layers::ALL).unwrap());
+    assert!(size.contains("one is 40x17 pixels, the other 8x8"), "{size}");
+}
+
+#[test]
+fn every_truncation_is_refused_in_one_line() {
+    let bytes = bytes_of(&complete(0..2));
+    for length in (0..bytes.len()).step_by(97).chain([0, 1, 8, 12, 16, bytes.len() - 1]) {
+        let error = Accumulation::decode(&bytes[..length]).unwrap_err();
+        assert!(!error.contains('\n'));
+        if length >= 16 {
+            let error = Accumulation::decode(&with_right_checksum(bytes[..length].to_vec())).unwrap_err();
+            assert!(!error.contains('\n'), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_header_that_promises_a_vast_film_costs_nothing() {
+    let mut bytes = bytes_of(&complete(0..1));
+    let at = bytes.windows(10).position(|w| w == br#""width":40"#).unwrap();
+    bytes.splice(at..at + 10, *br#""width":4000000"#);
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) + 5;
+    bytes[12..16].copy_from_slice(&length.to_le_bytes());
+    let error = Accumulation::decode(&with_right_checksum(bytes)).unwrap_err();
+    assert!(error.contains("bad plane Pixels"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #[test]
+    fn damage_never_panics_and_without_a_right_checksum_is_always_found(
+        places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+    ) {
+        let good = bytes_of(&complete(0..1));
+        let mut bytes = good.clone();
+        for (place, value) in places {
+            // Half of the damage goes where the structure is.
+            let length = if value % 2 == 0 { 600 } else { bytes.len() };
+            let at = place.index(length);
+            bytes[at] = value;
+        }
+        if bytes != good {
+            prop_assert!(Accumulation::decode(&bytes).is_err());
+        }
+        if let Ok(accumulation) = Accumulation::decode(&with_right_checksum(bytes)) {
+            // What is accepted can be used.
+            accumulation.film.median_relative_error();
+            let _ = accumulation.film.clone().merge(&complete(1..2).film);
+        }
+    }
+}

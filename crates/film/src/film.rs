@@ -1,0 +1,382 @@
+//! The film: the sums of a whole picture and which samples they hold.
+//!
+//! A film is filled in *passes*. [`Film::open_range`] starts one; every 16x16 tile is then filled by one thread in
+//! a [`FilmTile`] of its own and merged, in any order; [`Film::complete_through`] ends the pass. A pass that was
+//! interrupted leaves each tile with samples of its own count, and can be continued tile by tile. As all sums are
+//! exact (see `fixed_point`), neither the order, nor how samples were split into passes, films
+//! or machines changes a single bit.
+
+use std::ops::Range;
+
+use crate::ranges::{RangeError, SampleRanges};
+use crate::sample::{Layers, Sample};
+use crate::sums::Sums;
+
+/// Edge of a tile in pixels; those at the right and lower border may be smaller.
+pub const TILE_EDGE: u32 = 16;
+/// The greatest film in pixels (34 GB of sums without layers).
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// A rectangle of pixels; x to the right and y downwards from the upper left corner of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rect {
+    /// Least x.
+    pub x: u32,
+    /// Least y.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// Exact sums of some samples of one tile, owned by the thread that renders it.
+#[derive(Debug, Clone)]
+pub struct FilmTile {
+    rect: Rect,
+    samples: Range<u64>,
+    layers: Layers,
+    sums: Sums,
+    rejected: u64,
+}
+
+impl FilmTile {
+    /// An empty tile for `samples` of every pixel of `rect`, which is one of [`Film::tile_rect`].
+    pub fn new(rect: Rect, samples: Range<u64>, layers: Layers) -> Self {
+        let pixels = rect.width as usize * rect.height as usize;
+        Self { rect, samples, layers, sums: Sums::zero(pixels), rejected: 0 }
+    }
+
+    /// Where the tile is.
+    pub fn rect(&self) -> Rect {
+        self.rect
+    }
+
+    /// Which samples every pixel of it gets.
+    pub fn samples(&self) -> Range<u64> {
+        self.samples.clone()
+    }
+
+    /// Adds a sample to pixel (`x`, `y`) of the film, which must lie in [`rect`](Self::rect). One that is not
+    /// finite, or too large, is only counted as rejected: the pixel gets nothing for it.
+    pub fn add(&mut self, x: u32, y: u32, sample: &Sample) {
+        debug_assert!(x - self.rect.x < self.rect.width);
+        let index = (y - self.rect.y) as usize * self.rect.width as usize + (x - self.rect.x) as usize;
+        if !self.sums.add(index, sample, self.layers) {
+            self.rejected += 1;
+        }
+    }
+}
+
+/// A pass that has begun: every tile's own progress.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct OpenPass {
+    pub start: u64,
+    /// Samples beyond `start` that every pixel of a tile holds, one number a tile.
+    pub done: Vec<u64>,
+}
+
+/// The sums of a picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Film {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) layers: Layers,
+    pub(crate) sums: Sums,
+    pub(crate) complete: SampleRanges,
+    pub(crate) open: Option<OpenPass>,
+    pub(crate) rejected: u64,
+}
+
+/// A size that no film can have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a picture of {width}x{height} pixels cannot be made: it must have between 1 and {MAX_PIXELS} pixels"
+)]
+pub struct SizeError {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// Number of pixels of a film of this size.
+pub(crate) fn pixel_count(width: u32, height: u32) -> Result<usize, SizeError> {
+    match u64::from(width) * u64::from(height) {
+        count @ 1..=MAX_PIXELS => Ok(count as usize),
+        _ => Err(SizeError { width, height }),
+    }
+}
+
+/// Number of tiles of a film of this size.
+pub(crate) fn tile_count(width: u32, height: u32) -> usize {
+    width.div_ceil(TILE_EDGE) as usize * height.div_ceil(TILE_EDGE) as usize
+}
+
+impl Film {
+    /// A film without samples.
+    pub fn new(width: u32, height: u32, layers: Layers) -> Result<Self, SizeError> {
+        let sums = Sums::zero(pixel_count(width, height)?);
+        Ok(Self { width, height, layers, sums, complete: SampleRanges::default(), open: None, rejected: 0 })
+    }
+
+    /// Columns of pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows of pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// What is kept beside radiance.
+    pub fn layers(&self) -> Layers {
+        self.layers
+    }
+
+    /// Number of samples that were not finite or too large, and of which nothing was added.
+    pub fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// Number of tiles; they are numbered row by row.
+    pub fn tile_count(&self) -> usize {
+        tile_count(self.width, self.height)
+    }
+
+    /// Where tile number `tile` is.
+    pub fn tile_rect(&self, tile: usize) -> Rect {
+        let columns = self.width.div_ceil(TILE_EDGE) as usize;
+        let (x, y) = ((tile % columns) as u32 * TILE_EDGE, (tile / columns) as u32 * TILE_EDGE);
+        Rect { x, y, width: TILE_EDGE.min(self.width - x), height: TILE_EDGE.min(self.height - y) }
+    }
+
+    fn tile_at(&self, x: u32, y: u32) -> usize {
+        let columns = self.width.div_ceil(TILE_EDGE) as usize;
+        (y / TILE_EDGE) as usize * columns + (x / TILE_EDGE) as usize
+    }
+
+    /// Samples that every pixel holds.
+    pub fn complete(&self) -> &SampleRanges {
+        &self.complete
+    }
+
+    /// The first sample of the pass that has begun and is not complete, if there is one.
+    pub fn open_start(&self) -> Option<u64> {
+        self.open.as_ref().map(|pass| pass.start)
+    }
+
+    /// The next sample that tile number `tile` needs in the open pass.
+    pub fn next_sample(&self, tile: usize) -> Option<u64> {
+        self.open.as_ref().map(|pass| pass.start + pass.done[tile])
+    }
+
+    /// Number of samples that pixel (`x`, `y`) holds.
+    pub fn sample_count(&self, x: u32, y: u32) -> u64 {
+        let extra = self.open.as_ref().map_or(0, |pass| pass.done[self.tile_at(x, y)]);
+        self.complete.count() + extra
+    }
+
+    /// Begins a pass with sample number `start`, or continues the one that begins there.
+    pub fn open_range(&mut self, start: u64) -> Result<(), RangeError> {
+        match &self.open {
+            Some(pass) if pass.start == start => return Ok(()),
+            Some(pass) => return Err(RangeError::Unfinished(pass.start)),
+            None => {}
+        }
+        let next = start.checked_add(1).ok_or(RangeError::TooMany)?;
+        self.complete.clone().insert(start..next)?;
+        self.open = Some(OpenPass { start, done: vec![0; self.tile_count()] });
+        Ok(())
+    }
+
+    /// Adds the samples of a tile, which must be those that the tile needs next.
+    ///
+    /// # Panics
+    /// If no pass is open, or the tile is none of the film's, or its samples do not follow those it holds.
+    pub fn merge_tile(&mut self, tile: &FilmTile) {
+        let number = self.tile_at(tile.rect.x, tile.rect.y);
+        assert!(self.tile_rect(number) == tile.rect, "{:?} is no tile of the film", tile.rect);
+        let next = self.next_sample(number);
+        assert!(next == Some(tile.samples.start), "tile {number} needs {next:?}, not {:?}", tile.samples);
+        if let Some(pass) = &mut self.open {
+            pass.done[number] += tile.samples.end - tile.samples.start;
+        }
+        for row in 0..tile.rect.height {
+            let start = (tile.rect.y + row) as usize * self.width as usize + tile.rect.x as usize;
+            let tile_start = row as usize * tile.rect.width as usize;
+            self.sums.add_run(start, &tile.sums, tile_start, tile.rect.width as usize);
+        }
+        self.rejected += tile.rejected;
+    }
+
+    /// Ends the pass: every tile must hold all samples from its start up to, not including, `end`.
+    pub fn complete_through(&mut self, end: u64) -> Result<(), RangeError> {
+        let Some(pass) = &self.open else { return Ok(()) };
+        let start = pass.start;
+        for &done in &pass.done {
+            if start + done != end {
+                return Err(RangeError::Ragged { held: start + done, end });
+            }
+        }
+        self.complete.insert(start..end)?;
+        self.open = None;
+        Ok(())
+    }
+
+    /// Adds all samples of another film of the same size and layers; nothing changes on error.
+    pub fn merge(&mut self, other: &Self) -> Result<(), MergeError> {
+        for film in [&*self, other] {
+            if let Some(pass) = &film.open {
+                return Err(MergeError::Incomplete(pass.start));
+            }
+        }
+        if (self.width, self.height) != (other.width, other.height) {
+            return Err(MergeError::Sizes(self.width, self.height, other.width, other.height));
+        }
+        if self.layers != other.layers {
+            return Err(MergeError::Layers);
+        }
+        self.complete.insert_all(&other.complete)?;
+        self.sums.add_run(0, &other.sums, 0, self.sums.pixels.len());
+        self.rejected = self.rejected.saturating_add(other.rejected);
+        Ok(())
+    }
+}
+
+/// Why two films cannot become one.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MergeError {
+    /// The pictures have different sizes.
+    #[error("one is {0}x{1} pixels, the other {2}x{3}; render both at the same size")]
+    Sizes(u32, u32, u32, u32),
+    /// The films keep different layers.
+    #[error("they keep different layers; render both with the same")]
+    Layers,
+    /// A film was interrupted in the middle of a pass.
+    #[error("one was interrupted in the pass that begins at sample {0}; resume it to its end first")]
+    Incomplete(u64),
+    /// The samples cannot be held together.
+    #[error(transparent)]
+    Ranges(#[from] RangeError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A sample that is a fixed function of its place, with a wide range of brightness.
+    fn sample(x: u32, y: u32, index: u64) -> Sample {
+        let mut state = (u64::from(x) << 40 | u64::from(y) << 20) ^ index.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut next = || {
+            state = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9).wrapping_add(0x94d0_49bb);
+            (state >> 40) as f32 / (1 << 24) as f32
+        };
+        let mut colour = |exponent: i32| [next(), next(), next()].map(|u| u * 2f32.powi(exponent));
+        let (single, multiple) = (colour(-20), colour(18));
+        let albedo = colour(0);
+        let radiance = [0, 1, 2].map(|c| single[c] + multiple[c]);
+        let hit = !index.is_multiple_of(3);
+        Sample { radiance, hit, depth: albedo[0] * 7.0, albedo, emission: [0.0; 3], single, multiple }
+    }
+
+    fn render(film: &mut Film, tiles: impl Iterator<Item = usize>, end: u64) {
+        for tile in tiles {
+            let Some(start) = film.next_sample(tile) else { panic!("no pass is open") };
+            let rect = film.tile_rect(tile);
+            let mut part = FilmTile::new(rect, start..end, film.layers());
+            for index in start..end {
+                for y in rect.y..rect.y + rect.height {
+                    for x in rect.x..rect.x + rect.width {
+                        part.add(x, y, &sample(x, y, index));
+                    }
+                }
+            }
+            film.merge_tile(&part);
+        }
+    }
+
+    fn film_of(range: Range<u64>) -> Film {
+        let mut film = Film::new(35, 20, Layers::ALL).unwrap();
+        film.open_range(range.start).unwrap();
+        render(&mut film, 0..6, range.end);
+        film.complete_through(range.end).unwrap();
+        film
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+        #[test]
+        fn any_split_and_order_of_merging_gives_the_same_bits(
+            cuts in prop::collection::btree_set(1u64..24, 0..6), seed: u64,
+        ) {
+            let edges: Vec<u64> = [0].into_iter().chain(cuts).chain([24]).collect();
+            let mut parts: Vec<Film> = edges.windows(2).map(|w| film_of(w[0]..w[1])).collect();
+            let mut state = seed;
+            let mut merged = parts.swap_remove(state as usize % parts.len());
+            while !parts.is_empty() {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                merged.merge(&parts.swap_remove((state >> 33) as usize % parts.len())).unwrap();
+            }
+            prop_assert_eq!(merged, film_of(0..24));
+        }
+    }
+
+    #[test]
+    fn an_interrupted_pass_continues_tile_by_tile_to_the_same_bits() {
+        let mut film = film_of(0..4);
+        film.open_range(4).unwrap();
+        render(&mut film, [5, 0, 2].into_iter(), 7);
+        assert_eq!((film.sample_count(0, 0), film.sample_count(17, 0)), (7, 4));
+        assert_eq!(film.complete_through(7), Err(RangeError::Ragged { held: 4, end: 7 }));
+        film.open_range(4).unwrap();
+        render(&mut film, (0..6).rev(), 9);
+        film.complete_through(9).unwrap();
+        assert_eq!(film, film_of(0..9));
+    }
+
+    #[test]
+    fn films_that_do_not_belong_together_are_refused_unchanged() {
+        let film = film_of(0..2);
+        let mut other_size = Film::new(20, 35, Layers::ALL).unwrap();
+        assert!(matches!(other_size.merge(&film), Err(MergeError::Sizes(..))));
+        let mut other_layers = Film::new(35, 20, Layers::NONE).unwrap();
+        assert_eq!(other_layers.merge(&film), Err(MergeError::Layers));
+        let mut overlapping = film_of(1..3);
+        assert_eq!(overlapping.merge(&film), Err(MergeError::Ranges(RangeError::Overlap(1..2))));
+        assert_eq!(overlapping, film_of(1..3));
+        let mut open = film_of(2..3);
+        open.open_range(3).unwrap();
+        assert_eq!(open.merge(&film), Err(MergeError::Incomplete(3)));
+        assert_eq!(film.clone().merge(&open), Err(MergeError::Incomplete(3)));
+    }
+
+    #[test]
+    fn a_pass_cannot_repeat_samples_or_leave_another_unfinished() {
+        let mut film = film_of(0..2);
+        assert_eq!(film.open_range(1), Err(RangeError::Overlap(1..2)));
+        film.open_range(2).unwrap();
+        assert_eq!(film.open_range(5), Err(RangeError::Unfinished(2)));
+    }
+
+    #[test]
+    fn impossible_sizes_are_refused() {
+        for (width, height) in [(0, 5), (5, 0), (u32::MAX, u32::MAX)] {
+            assert_eq!(Film::new(width, height, Layers::NONE), Err(SizeError { width, height }));
+        }
+    }
+
+    #[test]
+    fn a_rejected_sample_is_counted_and_adds_nothing() {
+        let mut film = Film::new(1, 1, Layers::ALL).unwrap();
+        film.open_range(0).unwrap();
+        let mut tile = FilmTile::new(film.tile_rect(0), 0..2, Layers::ALL);
+        tile.add(0, 0, &Sample { radiance: [f32::NAN; 3], ..Sample::default() });
+        tile.add(0, 0, &Sample { radiance: [1.0; 3], ..Sample::default() });
+        film.merge_tile(&tile);
+        assert_eq!((film.rejected(), film.sample_count(0, 0)), (1, 2));
+        assert_eq!(film.mean(0, 0), [0.5; 3]);
+    }
+}

@@ -1,0 +1,20 @@
+//! What a picture says about its making, beside the pixels.
+
+use serde::{Deserialize, Serialize};
+
+/// How the samples of a film were made; kept in `.acc` and `.exr` files and in the summary.
+///
+/// Two films are estimates of the same picture, and can be merged, if all but `seconds` is equal.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ImageMetadata {
+    /// Hash of the scene and of all files that it names.
+    pub scene_hash: String,
+    /// Version of the program.
+    pub version: String,
+    /// The options that decide which samples are drawn (integrator, estimators, …), as one line of text.
+    pub options: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Time spent on rendering in seconds, summed over machines.
+    pub seconds: f64,
+}

@@ -1,0 +1,83 @@
+//! A render in numbers, for scripts.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::atomic_write::write_atomically;
+use crate::error::FileError;
+use crate::estimates::Estimate;
+use crate::film::Film;
+use crate::metadata::ImageMetadata;
+use crate::ranges::SampleRanges;
+
+/// What is said about a picture in one JSON object.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// Ranges of sample indices that every pixel holds, `[[0, 64]]`.
+    pub samples: SampleRanges,
+    /// Samples a pixel, the mean of all pixels (they differ only in an interrupted render).
+    pub samples_per_pixel: f64,
+    /// Time of rendering.
+    pub seconds: f64,
+    /// Mean radiance of red, green, blue and its standard error; no error (`null`) with fewer than two samples.
+    pub mean: [Estimate; 3],
+    /// See [`Film::median_relative_error`]; `null` if it is not known.
+    pub median_relative_error: Option<f64>,
+    /// Samples that were not finite or too large and count as black.
+    pub rejected: u64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Hash of the scene.
+    pub scene_hash: String,
+    /// Version of the program.
+    pub version: String,
+    /// Options that decide which samples are drawn.
+    pub options: String,
+}
+
+impl Summary {
+    /// Sums up a film.
+    pub fn new(film: &Film, metadata: &ImageMetadata) -> Self {
+        Self {
+            width: film.width(),
+            height: film.height(),
+            samples: film.complete().clone(),
+            samples_per_pixel: film.mean_sample_count(),
+            seconds: metadata.seconds,
+            mean: film.image_mean(),
+            median_relative_error: film.median_relative_error().filter(|e| e.is_finite()),
+            rejected: film.rejected(),
+            seed: metadata.seed,
+            scene_hash: metadata.scene_hash.clone(),
+            version: metadata.version.clone(),
+            options: metadata.options.clone(),
+        }
+    }
+
+    /// Writes it as JSON.
+    pub fn write_json(&self, path: &Path) -> Result<(), FileError> {
+        write_atomically(path, |file| Ok(serde_json::to_writer_pretty(file, self)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::Layers;
+
+    #[test]
+    fn the_keys_are_those_scripts_depend_on() {
+        let film = Film::new(2, 2, Layers::NONE).unwrap();
+        let json = serde_json::to_value(Summary::new(&film, &ImageMetadata::default())).unwrap();
+        assert_eq!(json["samples"], serde_json::json!([]));
+        assert_eq!(json["mean"][0], serde_json::json!({"mean": 0.0, "standard_error": null}));
+        for key in ["median_relative_error", "rejected", "seconds", "seed", "scene_hash", "version"] {
+            assert!(json.get(key).is_some(), "{key}");
+        }
+    }
+}

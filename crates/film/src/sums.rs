@@ -1,0 +1,203 @@
+//! The exact sums behind the pixels of a film or of one of its tiles.
+//!
+//! Per pixel: 128 bytes for Σx and Σx² of red, green, blue and the count of camera paths that met a medium, and,
+//! per layer that is kept and has seen anything but zero, 16 bytes (depth), 24 (albedo) or 48 (emission, single,
+//! multiple). A 1280x720 picture of a cloud with all layers (no emission) takes 242 MB, without layers 118 MB.
+
+use crate::fixed_point::{LIMIT, SUM_FRACTION_BITS, SquareSum, to_fixed};
+use crate::sample::{Layers, Sample};
+
+/// Fractional bits of Σ depth: steps of 4e-15, up to 2.8e14 scene units.
+pub const DEPTH_FRACTION_BITS: i32 = 48;
+/// Depths must be smaller than this in magnitude, so that 2^31 of them can be added.
+const DEPTH_LIMIT: f32 = 281_474_976_710_656.0;
+/// Fractional bits of Σ albedo: steps of 2e-10.
+pub const ALBEDO_FRACTION_BITS: i32 = 32;
+/// Albedos must be smaller than this, so that 2^31 of them can be added.
+const ALBEDO_LIMIT: f32 = 2.0;
+
+/// Sums of what every pixel keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PixelSums {
+    /// Σx of red, green, blue; [`SUM_FRACTION_BITS`].
+    pub radiance: [i128; 3],
+    /// Σx² of red, green, blue.
+    pub squares: [SquareSum; 3],
+    /// Camera paths that collided with a medium.
+    pub hits: u64,
+}
+
+/// Sums of many pixels; a plane of a layer is empty as long as all of it is zero.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Sums {
+    /// Radiance and coverage, one a pixel.
+    pub pixels: Vec<PixelSums>,
+    /// Σ depth of hits; [`DEPTH_FRACTION_BITS`].
+    pub depth: Vec<i128>,
+    /// Σ albedo of hits; [`ALBEDO_FRACTION_BITS`].
+    pub albedo: Vec<[u64; 3]>,
+    /// Σ emission; [`SUM_FRACTION_BITS`], as the next two.
+    pub emission: Vec<[i128; 3]>,
+    /// Σ light scattered once.
+    pub single: Vec<[i128; 3]>,
+    /// Σ light scattered more than once.
+    pub multiple: Vec<[i128; 3]>,
+}
+
+impl Sums {
+    /// Zero sums of `count` pixels.
+    pub fn zero(count: usize) -> Self {
+        Self { pixels: vec![PixelSums::default(); count], ..Self::default() }
+    }
+
+    /// Adds a sample to the pixel at `index`; `false`, and nothing is added, if some number of it has no place in
+    /// the sums (not finite, or too large).
+    pub fn add(&mut self, index: usize, sample: &Sample, layers: Layers) -> bool {
+        if !representable(sample, layers) {
+            return false;
+        }
+        let count = self.pixels.len();
+        let pixel = &mut self.pixels[index];
+        for (channel, &x) in sample.radiance.iter().enumerate() {
+            pixel.radiance[channel] = pixel.radiance[channel].wrapping_add(to_fixed(x, SUM_FRACTION_BITS));
+            pixel.squares[channel].add_square_of(x);
+        }
+        if sample.hit {
+            pixel.hits = pixel.hits.wrapping_add(1);
+            if layers.depth && sample.depth != 0.0 {
+                let sum = &mut plane(&mut self.depth, count)[index];
+                *sum = sum.wrapping_add(to_fixed(sample.depth, DEPTH_FRACTION_BITS));
+            }
+            if layers.albedo && sample.albedo != [0.0; 3] {
+                let fixed = sample.albedo.map(|a| to_fixed(a, ALBEDO_FRACTION_BITS) as u64);
+                add_albedo(&mut plane(&mut self.albedo, count)[index], fixed);
+            }
+        }
+        for (keep, light, sums) in [
+            (layers.emission, sample.emission, &mut self.emission),
+            (layers.single, sample.single, &mut self.single),
+            (layers.multiple, sample.multiple, &mut self.multiple),
+        ] {
+            if keep && light != [0.0; 3] {
+                let fixed = light.map(|x| to_fixed(x, SUM_FRACTION_BITS));
+                add_light(&mut plane(sums, count)[index], fixed);
+            }
+        }
+        true
+    }
+
+    /// Adds `length` pixels of `other` from `other_start` on to those of `self` from `start` on.
+    pub fn add_run(&mut self, start: usize, other: &Self, other_start: usize, length: usize) {
+        let count = self.pixels.len();
+        let (to, from) = (start..start + length, other_start..other_start + length);
+        for (a, b) in self.pixels[to.clone()].iter_mut().zip(&other.pixels[from.clone()]) {
+            add_light(&mut a.radiance, b.radiance);
+            for (a, &b) in a.squares.iter_mut().zip(&b.squares) {
+                a.add(b);
+            }
+            a.hits = a.hits.wrapping_add(b.hits);
+        }
+        if !other.depth.is_empty() {
+            for (a, &b) in
+                plane(&mut self.depth, count)[to.clone()].iter_mut().zip(&other.depth[from.clone()])
+            {
+                *a = a.wrapping_add(b);
+            }
+        }
+        if !other.albedo.is_empty() {
+            let sums = plane(&mut self.albedo, count);
+            for (a, &b) in sums[to.clone()].iter_mut().zip(&other.albedo[from.clone()]) {
+                add_albedo(a, b);
+            }
+        }
+        for (sums, other) in [
+            (&mut self.emission, &other.emission),
+            (&mut self.single, &other.single),
+            (&mut self.multiple, &other.multiple),
+        ] {
+            if !other.is_empty() {
+                for (a, &b) in plane(sums, count)[to.clone()].iter_mut().zip(&other[from.clone()]) {
+                    add_light(a, b);
+                }
+            }
+        }
+    }
+}
+
+fn representable(sample: &Sample, layers: Layers) -> bool {
+    // A comparison with NaN is false, so each test also refuses NaN.
+    let light = |keep: bool, x: &[f32; 3]| !keep || x.iter().all(|x| x.abs() < LIMIT);
+    let albedo = |a: &f32| *a >= 0.0 && *a < ALBEDO_LIMIT;
+    light(true, &sample.radiance)
+        && light(layers.emission, &sample.emission)
+        && light(layers.single, &sample.single)
+        && light(layers.multiple, &sample.multiple)
+        && (!sample.hit
+            || (!layers.depth || sample.depth.abs() < DEPTH_LIMIT)
+                && (!layers.albedo || sample.albedo.iter().all(albedo)))
+}
+
+/// The plane of a layer, made when the first sum arrives.
+fn plane<T: Copy + Default>(sums: &mut Vec<T>, count: usize) -> &mut [T] {
+    if sums.is_empty() {
+        sums.resize(count, T::default());
+    }
+    sums
+}
+
+fn add_light(sums: &mut [i128; 3], light: [i128; 3]) {
+    for (sum, x) in sums.iter_mut().zip(light) {
+        *sum = sum.wrapping_add(x);
+    }
+}
+
+fn add_albedo(sums: &mut [u64; 3], albedo: [u64; 3]) {
+    for (sum, a) in sums.iter_mut().zip(albedo) {
+        *sum = sum.wrapping_add(a);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_takes_128_bytes() {
+        assert_eq!(size_of::<PixelSums>(), 128);
+    }
+
+    #[test]
+    fn numbers_without_a_place_are_refused_whole() {
+        let good = Sample { radiance: [1.0; 3], hit: true, depth: 2.0, ..Sample::default() };
+        let bad = [
+            Sample { radiance: [0.0, f32::NAN, 0.0], ..good },
+            Sample { radiance: [f32::INFINITY, 0.0, 0.0], ..good },
+            Sample { radiance: [-5e9, 0.0, 0.0], ..good },
+            Sample { depth: f32::INFINITY, ..good },
+            Sample { albedo: [-0.1, 0.0, 0.0], ..good },
+            Sample { emission: [f32::NAN; 3], ..good },
+            Sample { single: [f32::NAN; 3], ..good },
+            Sample { multiple: [f32::NAN; 3], ..good },
+        ];
+        let mut sums = Sums::zero(1);
+        for sample in &bad {
+            assert!(!sums.add(0, sample, Layers::ALL), "{sample:?}");
+        }
+        assert_eq!(sums, Sums::zero(1));
+        assert!(sums.add(0, &good, Layers::ALL));
+    }
+
+    #[test]
+    fn a_layer_that_is_not_kept_cannot_spoil_a_sample() {
+        let sample = Sample { hit: true, depth: f32::NAN, single: [f32::NAN; 3], ..Sample::default() };
+        assert!(Sums::zero(1).add(0, &sample, Layers::NONE));
+    }
+
+    #[test]
+    fn planes_stay_empty_until_something_arrives() {
+        let mut sums = Sums::zero(4);
+        sums.add(1, &Sample { radiance: [1.0; 3], single: [1.0; 3], ..Sample::default() }, Layers::ALL);
+        assert_eq!(sums.single.len(), 4);
+        assert!(sums.multiple.is_empty() && sums.emission.is_empty() && sums.depth.is_empty());
+    }
+}
