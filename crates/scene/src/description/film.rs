@@ -1,0 +1,80 @@
+//! `[film]` and `[render]`: the picture that is made, and how.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The picture that is made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct FilmDescription {
+    /// Width and height, pixels.
+    #[schemars(inner(range(min = 1, max = 65536)))]
+    pub resolution: [u32; 2],
+    /// Exposure of pictures for the screen, stops; 0 shows radiance 1 as white.
+    #[schemars(range(min = -100, max = 100))]
+    pub exposure: f64,
+    /// Further layers of the EXR file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layers: Option<Vec<Layer>>,
+}
+
+impl Default for FilmDescription {
+    fn default() -> Self {
+        Self { resolution: [1280, 720], exposure: 0.0, layers: None }
+    }
+}
+
+/// A layer of the EXR file beside the picture itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Layer {
+    /// Standard error of each pixel and channel.
+    StandardError,
+    /// Number of samples of each pixel.
+    SampleCount,
+    /// Mean distance to the first scattering event.
+    Depth,
+    /// Albedo at the first scattering event.
+    Albedo,
+    /// Fraction of the background that is seen.
+    Transmittance,
+    /// Light emitted by the medium that was not scattered.
+    Emission,
+    /// Light scattered once.
+    Single,
+    /// Light scattered more than once.
+    Multiple,
+}
+
+/// How the picture is rendered.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct RenderDescription {
+    /// Samples for each pixel.
+    #[schemars(range(min = 1))]
+    pub spp: u32,
+    /// Which random numbers are used; the same seed gives the same picture.
+    pub seed: u32,
+    /// Greatest number of scattering events of a path; unlimited when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_depth: Option<u32>,
+    /// Which implementation of the transport renders.
+    pub integrator: Integrator,
+}
+
+impl Default for RenderDescription {
+    fn default() -> Self {
+        Self { spp: 64, seed: 0, max_depth: None, integrator: Integrator::Fast }
+    }
+}
+
+/// Which implementation of the transport renders; all estimate the same picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Many paths in flight.
+    #[default]
+    Fast,
+    /// One path at a time, to be read beside the equations.
+    Reference,
+}

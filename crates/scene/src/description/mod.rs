@@ -1,0 +1,67 @@
+//! What the user wrote: a scene as plain data, one struct for each table of the scene file.
+//!
+//! The types are read by serde, and the JSON schema that checks a file is generated from them, so that a key, its
+//! range and its documentation stand in one place. Lengths are in scene units, angles in degrees, colours linear
+//! Rec. 709.
+
+mod camera;
+mod film;
+mod lights;
+mod medium;
+mod rgb;
+mod rules;
+mod transform;
+mod volume;
+
+pub use camera::CameraDescription;
+pub use film::{FilmDescription, Integrator, Layer, RenderDescription};
+pub use lights::{
+    ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
+    PointLightDescription, SkyDescription, SunLightDescription,
+};
+pub use medium::{Coefficients, MediumDescription, PhaseDescription};
+pub use rgb::Rgb;
+pub use rules::Violation;
+pub use transform::{Scale, TransformDescription};
+pub use volume::{
+    BoxShape, GridMeaning, ProceduralDescription, RawType, SlabShape, SphereShape, Storage,
+    VolumeDescription, VolumeSource,
+};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A scene for Tyndall: what is seen, through which camera, under which lights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "Tyndall scene")]
+pub struct SceneDescription {
+    /// Name of the scene's unit of length; informational. Coefficients are per this unit.
+    #[serde(default = "default_unit")]
+    pub unit: String,
+    /// The camera.
+    pub camera: CameraDescription,
+    /// The picture that is made.
+    #[serde(default)]
+    pub film: FilmDescription,
+    /// How it is rendered.
+    #[serde(default)]
+    pub render: RenderDescription,
+    /// A homogeneous medium that fills the whole scene, such as fog.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub medium: Option<MediumDescription>,
+    /// Volumes: grids from files, homogeneous shapes, procedural clouds. Where they overlap, their coefficients
+    /// add.
+    #[serde(default, rename = "volume", skip_serializing_if = "Vec::is_empty")]
+    pub volumes: Vec<VolumeDescription>,
+    /// Lights.
+    #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
+    pub lights: Vec<LightDescription>,
+}
+
+fn default_unit() -> String {
+    "m".to_owned()
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

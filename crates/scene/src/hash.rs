@@ -1,0 +1,63 @@
+//! What a picture was made of, as a number: accumulations of different scenes must not be merged.
+
+use std::fmt;
+use std::io::Read;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use crate::description::{LightDescription, RenderDescription, SceneDescription};
+use crate::error::SceneError;
+
+/// The first 128 bits of a SHA-256 over everything that determines the expected picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SceneHash(pub [u8; 16]);
+
+impl fmt::Display for SceneHash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+/// Hash of a scene whose file names are relative to `folder`.
+///
+/// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they name.
+/// It leaves out what does not change the expected picture: where the files are, names, unit, comments, samples per
+/// pixel, seed, integrator, exposure and layers.
+pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
+    let mut canonical = description.clone();
+    canonical.unit.clear();
+    canonical.film.exposure = 0.0;
+    canonical.film.layers = None;
+    canonical.render =
+        RenderDescription { max_depth: description.render.max_depth, ..RenderDescription::default() };
+    for volume in &mut canonical.volumes {
+        volume.name = None;
+        if let Some(file) = &mut volume.file {
+            *file = content_hash(&folder.join(&file))?;
+        }
+    }
+    for light in &mut canonical.lights {
+        if let LightDescription::Image(image) = light {
+            image.file = content_hash(&folder.join(&image.file))?;
+        }
+    }
+    Ok(SceneHash(first_half(Sha256::digest(canonical.to_toml().as_bytes()).into())))
+}
+
+fn content_hash(path: &Path) -> Result<String, SceneError> {
+    let refuse = |error: std::io::Error| SceneError::file(path, error.to_string());
+    let mut file = std::fs::File::open(path).map_err(refuse)?;
+    let mut hasher = Sha256::new();
+    let mut block = vec![0; 1 << 20];
+    loop {
+        match file.read(&mut block).map_err(refuse)? {
+            0 => return Ok(SceneHash(first_half(hasher.finalize().into())).to_string()),
+            length => hasher.update(&block[..length]),
+        }
+    }
+}
+
+fn first_half(digest: [u8; 32]) -> [u8; 16] {
+    std::array::from_fn(|index| digest[index])
+}

@@ -1,0 +1,308 @@
+//! Holds a tree of values against the JSON schema and says everything that is wrong, in words.
+//!
+//! Only what [`json_schema`](super::json_schema) generates is understood: objects with known properties, arrays,
+//! numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, and `anyOf` of
+//! different kinds of values.
+
+use serde_json::Value as Schema;
+
+use super::tree::{Entry, Node, Place, Value};
+use crate::error::Problem;
+
+/// Greatest magnitude of any number: products of a few such numbers stay finite in double precision.
+const GREATEST: f64 = 1e30;
+
+/// Everything in `node` that the schema does not allow.
+pub(super) fn problems(node: &Node, schema: &Schema) -> Vec<Problem> {
+    let mut check = Check { problems: Vec::new() };
+    check.value(node, "the scene", schema);
+    check.problems
+}
+
+struct Check {
+    problems: Vec<Problem>,
+}
+
+impl Check {
+    fn report(&mut self, place: &Place, message: String) {
+        self.problems.push(place.problem(message));
+    }
+
+    /// `name` is what messages call the value.
+    fn value(&mut self, node: &Node, name: &str, schema: &Schema) {
+        if let Some(words) = words_of(schema) {
+            return self.word(node, name, &words);
+        }
+        if let Some(branches) = branches_of(schema) {
+            if branches.iter().any(|branch| tag_of(branch).is_some()) {
+                return self.tagged_table(node, name, branches);
+            }
+            return match branches.iter().find(|branch| is_kind(&node.value, kind_of(branch))) {
+                Some(branch) => self.value(node, name, branch),
+                None => self.wrong_kind(node, name, schema),
+            };
+        }
+        if !is_kind(&node.value, kind_of(schema)) {
+            return self.wrong_kind(node, name, schema);
+        }
+        match &node.value {
+            Value::Integer(integer) => self.number(node, name, *integer as f64, schema),
+            Value::Float(float) => self.number(node, name, *float, schema),
+            Value::Array(items) => self.array(node, name, items, schema),
+            Value::Table(entries) => self.table(node, name, entries, schema),
+            Value::String(_) | Value::Boolean(_) | Value::Datetime => {}
+        }
+    }
+
+    fn wrong_kind(&mut self, node: &Node, name: &str, schema: &Schema) {
+        self.report(
+            &node.place,
+            format!("{name} must be {}, not {}", expected(schema), kind_in_words(&node.value)),
+        );
+    }
+
+    fn word(&mut self, node: &Node, name: &str, words: &[&str]) {
+        match &node.value {
+            Value::String(word) if words.contains(&word.as_str()) => {}
+            Value::String(word) => {
+                let mend = did_you_mean(word, words.iter().copied());
+                self.report(&node.place, format!("unknown value `{word}` of {name}{mend}"));
+            }
+            other => {
+                let list = list_of(words.iter().copied());
+                self.report(
+                    &node.place,
+                    format!("{name} must be one of {list}, not {}", kind_in_words(other)),
+                );
+            }
+        }
+    }
+
+    fn number(&mut self, node: &Node, name: &str, number: f64, schema: &Schema) {
+        let bound = |key: &str| schema.get(key).and_then(Schema::as_f64);
+        let is_inside = bound("minimum").is_none_or(|bound| number >= bound)
+            && bound("maximum").is_none_or(|bound| number <= bound)
+            && bound("exclusiveMinimum").is_none_or(|bound| number > bound)
+            && bound("exclusiveMaximum").is_none_or(|bound| number < bound);
+        if !number.is_finite() {
+            self.report(&node.place, format!("{name} must be finite, not {number}"));
+        } else if !is_inside {
+            self.report(&node.place, format!("{name} must be {}, not {number}", expected(schema)));
+        } else if number.abs() > GREATEST {
+            self.report(
+                &node.place,
+                format!("{name} is {number:e}: numbers beyond 1e30 are not computed with"),
+            );
+        }
+    }
+
+    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &Schema) {
+        let length = |key: &str| schema.get(key).and_then(Schema::as_u64);
+        let is_fitting = length("minItems").is_none_or(|least| items.len() as u64 >= least)
+            && length("maxItems").is_none_or(|most| items.len() as u64 <= most);
+        if !is_fitting {
+            let message = format!("{name} must be {}, not {} of them", expected(schema), items.len());
+            return self.report(&node.place, message);
+        }
+        let Some(item_schema) = schema.get("items") else { return };
+        let is_array_of_tables = kind_of(item_schema) == "object" || branches_of(item_schema).is_some();
+        for (index, item) in items.iter().enumerate() {
+            let item_name = if is_array_of_tables {
+                name.to_owned()
+            } else {
+                format!("`{}[{index}]`", name.trim_matches('`'))
+            };
+            self.value(item, &item_name, item_schema);
+        }
+    }
+
+    fn tagged_table(&mut self, node: &Node, name: &str, branches: &[Schema]) {
+        let Value::Table(entries) = &node.value else {
+            let message = format!("{name} must be a table with a `type`, not {}", kind_in_words(&node.value));
+            return self.report(&node.place, message);
+        };
+        let tags = || branches.iter().filter_map(tag_of);
+        let Some(entry) = entries.iter().find(|entry| entry.key == "type") else {
+            return self.report(&node.place, format!("{name} lacks `type`: give one of {}", list_of(tags())));
+        };
+        let Value::String(tag) = &entry.node.value else {
+            let message = format!("`type` must be one of {}", list_of(tags()));
+            return self.report(&entry.node.place, message);
+        };
+        match branches.iter().find(|branch| tag_of(branch) == Some(tag)) {
+            Some(branch) => self.table(node, &format!("{name} of type `{tag}`"), entries, branch),
+            None => {
+                let mend = did_you_mean(tag, tags());
+                self.report(&entry.node.place, format!("unknown type `{tag}` of {name}{mend}"));
+            }
+        }
+    }
+
+    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &Schema) {
+        let Some(properties) = schema.get("properties").and_then(Schema::as_object) else { return };
+        let mut has_unknown = false;
+        for entry in entries {
+            match properties.get(&entry.key) {
+                Some(property) if entry.key == "type" && tag_of(schema).is_some() => {
+                    debug_assert!(property.get("const").is_some());
+                }
+                Some(property) => self.value(&entry.node, &name_of(&entry.key, property), property),
+                None => {
+                    has_unknown = true;
+                    let absent = properties
+                        .keys()
+                        .map(String::as_str)
+                        .filter(|key| !entries.iter().any(|entry| entry.key == **key));
+                    let mend = did_you_mean(&entry.key, absent);
+                    self.report(&entry.key_place, format!("unknown key `{}` in {name}{mend}", entry.key));
+                }
+            }
+        }
+        let required = schema.get("required").and_then(Schema::as_array);
+        for key in required.into_iter().flatten().filter_map(Schema::as_str) {
+            // A misspelt key is reported once, as unknown.
+            if !has_unknown && !entries.iter().any(|entry| entry.key == key) {
+                let wanted = properties.get(key).map_or_else(String::new, expected);
+                self.report(
+                    &node.place,
+                    format!("{name} lacks {}: give {wanted}", name_of(key, &Schema::Null)),
+                );
+            }
+        }
+    }
+}
+
+/// What messages call the value of a key: tables as people write them, other keys in back quotes.
+fn name_of(key: &str, schema: &Schema) -> String {
+    let is_table = kind_of(schema) == "object" && matches!(key, "film" | "render" | "medium");
+    match key {
+        "camera" => "[camera]".to_owned(),
+        "volume" | "light" => format!("[[{key}]]"),
+        _ if is_table => format!("[{key}]"),
+        _ => format!("`{key}`"),
+    }
+}
+
+/// The words a schema allows, if it is a choice of words.
+fn words_of(schema: &Schema) -> Option<Vec<&str>> {
+    if let Some(words) = schema.get("enum").and_then(Schema::as_array) {
+        return words.iter().map(Schema::as_str).collect();
+    }
+    let branches = schema.get("oneOf")?.as_array()?;
+    let mut words = Vec::new();
+    for branch in branches {
+        match (branch.get("const"), branch.get("enum").and_then(Schema::as_array)) {
+            (Some(word), _) => words.push(word.as_str()?),
+            (None, Some(several)) => words.extend(several.iter().filter_map(Schema::as_str)),
+            (None, None) => return None,
+        }
+    }
+    Some(words)
+}
+
+fn branches_of(schema: &Schema) -> Option<&Vec<Schema>> {
+    schema.get("oneOf").or_else(|| schema.get("anyOf"))?.as_array()
+}
+
+/// The `type` by which an object is chosen among others.
+fn tag_of(schema: &Schema) -> Option<&str> {
+    schema.get("properties")?.get("type")?.get("const")?.as_str()
+}
+
+fn kind_of(schema: &Schema) -> &str {
+    schema.get("type").and_then(Schema::as_str).unwrap_or("")
+}
+
+fn is_kind(value: &Value, kind: &str) -> bool {
+    match value {
+        Value::String(_) => kind == "string",
+        Value::Integer(_) => kind == "integer" || kind == "number",
+        Value::Float(_) => kind == "number",
+        Value::Boolean(_) => kind == "boolean",
+        Value::Array(_) => kind == "array",
+        Value::Table(_) => kind == "object",
+        Value::Datetime => false,
+    }
+}
+
+fn kind_in_words(value: &Value) -> String {
+    match value {
+        Value::String(_) => "a string".to_owned(),
+        Value::Integer(_) => "an integer".to_owned(),
+        Value::Float(number) => format!("{number}"),
+        Value::Boolean(flag) => format!("{flag}"),
+        Value::Array(items) => format!("an array of {}", items.len()),
+        Value::Table(_) => "a table".to_owned(),
+        Value::Datetime => "a date".to_owned(),
+    }
+}
+
+/// What a schema allows, in words that follow "must be".
+fn expected(schema: &Schema) -> String {
+    if let Some(words) = words_of(schema) {
+        return format!("one of {}", list_of(words));
+    }
+    if let Some(branches) = branches_of(schema) {
+        return match branches.iter().filter_map(tag_of).collect::<Vec<_>>() {
+            tags if tags.is_empty() => branches.iter().map(expected).collect::<Vec<_>>().join(" or "),
+            tags => format!("a table with a `type`, one of {}", list_of(tags)),
+        };
+    }
+    match kind_of(schema) {
+        "integer" => format!("an integer{}", range_in_words(schema)),
+        "number" => format!("a number{}", range_in_words(schema)),
+        "string" => "a string".to_owned(),
+        "boolean" => "true or false".to_owned(),
+        "array" => {
+            let items = schema.get("items").unwrap_or(&Schema::Null);
+            let count = match schema.get("minItems").and_then(Schema::as_u64) {
+                Some(count) => format!("{count} "),
+                None => String::new(),
+            };
+            match kind_of(items) {
+                "integer" => format!("an array of {count}integers{}", range_in_words(items)),
+                "number" => format!("an array of {count}numbers{}", range_in_words(items)),
+                _ if words_of(items).is_some() => format!("an array of words, each {}", expected(items)),
+                _ => "an array of tables".to_owned(),
+            }
+        }
+        "object" => "a table".to_owned(),
+        _ => "something else".to_owned(),
+    }
+}
+
+fn range_in_words(schema: &Schema) -> String {
+    let bound = |key: &str| schema.get(key).and_then(Schema::as_f64);
+    match (bound("minimum"), bound("exclusiveMinimum"), bound("maximum"), bound("exclusiveMaximum")) {
+        (None, None, None, None) => String::new(),
+        (Some(least), None, None, None) => format!(" of at least {least}"),
+        (None, None, Some(most), None) => format!(" of at most {most}"),
+        (None, Some(below), None, None) => format!(" above {below}"),
+        (None, Some(below), Some(most), None) => format!(" above {below} and at most {most}"),
+        (None, Some(below), None, Some(above)) => format!(" between {below} and {above}, both excluded"),
+        (Some(least), None, Some(most), None) => format!(" from {least} to {most}"),
+        // No other pair of bounds is in the schema.
+        _ => " within its range".to_owned(),
+    }
+}
+
+/// `, did you mean …?`, or what there is to choose from.
+fn did_you_mean<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> String {
+    let choices: Vec<&str> = choices.collect();
+    let nearest = choices
+        .iter()
+        .map(|choice| (strsim::damerau_levenshtein(&word.to_lowercase(), choice), choice))
+        .min_by_key(|(distance, _)| *distance);
+    match nearest {
+        // Up to a third of the letters may be wrong.
+        Some((distance, choice)) if 3 * distance <= word.chars().count().max(choice.len()) => {
+            format!(", did you mean `{choice}`?")
+        }
+        Some(_) => format!("; there is {}", list_of(choices)),
+        None => String::new(),
+    }
+}
+
+fn list_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
