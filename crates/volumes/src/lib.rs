@@ -5,8 +5,9 @@
 
 #![forbid(unsafe_code)]
 
+mod blosc;
 mod error;
 mod grid;
 
 pub use error::ReadError;
-pub use grid::{Grid, GridClass, GridValues, Leaf, Tile, Tree, LEAF_EDGE, LEAF_VOXELS};
+pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
