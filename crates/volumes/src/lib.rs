@@ -8,6 +8,13 @@
 mod blosc;
 mod error;
 mod grid;
+mod probe;
+mod selection;
+mod statistics;
+pub mod vdb;
 
 pub use error::ReadError;
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
+pub use probe::Lookup;
+pub use selection::GridSelection;
+pub use statistics::{Components, GridStatistics};
