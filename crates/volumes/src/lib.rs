@@ -6,9 +6,17 @@
 #![forbid(unsafe_code)]
 
 pub mod bricks;
+mod blosc;
 mod error;
 mod grid;
+mod probe;
+mod selection;
+mod statistics;
+pub mod vdb;
 
 pub use bricks::{BrickGrid, Storage};
 pub use error::ReadError;
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
+pub use probe::Lookup;
+pub use selection::GridSelection;
+pub use statistics::{Components, GridStatistics};
