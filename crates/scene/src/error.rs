@@ -7,6 +7,9 @@ use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 
+/// A text under its name, shared by the problems in it.
+pub(crate) type SceneText = Arc<NamedSource<Arc<str>>>;
+
 /// Why a scene cannot be read or built. Displays as one line; as a [`Diagnostic`] it shows the place in the file.
 #[derive(Debug, Clone)]
 pub struct SceneError {
@@ -22,7 +25,7 @@ pub struct Problem {
     pub position: Option<(usize, usize)>,
     /// What is wrong, and the mend.
     pub message: String,
-    source: Option<(Arc<NamedSource<Arc<str>>>, Range<usize>)>,
+    source: Option<(SceneText, Range<usize>)>,
 }
 
 impl SceneError {
@@ -49,11 +52,7 @@ impl SceneError {
 
 impl Problem {
     /// A problem at the bytes `span` of a text.
-    pub(crate) fn at(
-        text: &Arc<NamedSource<Arc<str>>>,
-        span: Range<usize>,
-        message: impl Into<String>,
-    ) -> Self {
+    pub(crate) fn at(text: &SceneText, span: Range<usize>, message: impl Into<String>) -> Self {
         let before = text.inner().get(..span.start).unwrap_or_default();
         let line_start = before.rfind('\n').map_or(0, |end| end + 1);
         let line = before.matches('\n').count() + 1;

@@ -5,12 +5,17 @@
 
 #![forbid(unsafe_code)]
 
+mod camera;
 pub mod description;
 mod error;
 mod hash;
+pub mod light;
+pub mod sky;
 mod toml;
 
+pub use self::camera::{Camera, Ray};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
 pub use self::hash::{SceneHash, scene_hash};
+pub use self::light::{Light, LightSample};
 pub use self::toml::{SceneDocument, json_schema};

@@ -106,7 +106,7 @@ impl Default for SkyDescription {
             sun_elevation: None,
             sun_azimuth: None,
             toward_sun: None,
-            turbidity: 2.5,
+            turbidity: 2.0,
             altitude: 100.0,
             ground_albedo: Rgb::Grey(0.2),
             intensity: 1.0,

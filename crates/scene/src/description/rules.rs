@@ -111,10 +111,8 @@ fn volume(found: &mut Findings, volume: &VolumeDescription) {
         Err((key, message)) => return found.report(key, message),
     };
     match source {
-        VolumeSource::Box(shape) => {
-            if (0..3).any(|axis| shape.min[axis] >= shape.max[axis]) {
-                found.report("box", "`box` is empty: each number of `min` must be less than that of `max`");
-            }
+        VolumeSource::Box(shape) if (0..3).any(|axis| shape.min[axis] >= shape.max[axis]) => {
+            found.report("box", "`box` is empty: each number of `min` must be less than that of `max`");
         }
         VolumeSource::Slab(shape) if shape.bottom >= shape.top => {
             found.report("slab", "`slab` is empty: `bottom` must be less than `top`");

@@ -1,18 +1,16 @@
 //! TOML values that know where they stand, in the scene file or in a `--set` option.
 
 use std::ops::Range;
-use std::sync::Arc;
 
-use miette::NamedSource;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::Problem;
+use crate::error::{Problem, SceneText};
 
 /// Bytes of a text.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
-    /// The scene file; none for a `--set` option, which is shown whole.
-    pub(super) text: Arc<NamedSource<Arc<str>>>,
+    pub(super) text: SceneText,
+    /// Whether the text is a `--set` option, which is shown whole, and not the scene file.
     pub(super) is_option: bool,
     pub(super) span: Range<usize>,
 }

@@ -1,0 +1,164 @@
+//! The perspective camera: a pinhole, or a thin lens of finite aperture.
+//!
+//! A point of the film goes through the centre of the lens to the point in focus; a thin lens sends all rays from
+//! that film point through the same point in focus (Kolb, Mitchell & Hanrahan 1995, section 2). Pixels are filtered
+//! by a box: a film point is uniform in its pixel.
+
+use glam::DVec3;
+
+use crate::description::CameraDescription;
+
+/// A half-line; `direction` is of unit length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it begins.
+    pub origin: DVec3,
+    /// Where it goes.
+    pub direction: DVec3,
+}
+
+/// A camera ready to make rays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    position: DVec3,
+    forward: DVec3,
+    right: DVec3,
+    up: DVec3,
+    /// Width and height of the film at distance 1 from the lens.
+    film_size: [f64; 2],
+    resolution: [u32; 2],
+    aperture_radius: f64,
+    focus_distance: f64,
+}
+
+impl Camera {
+    /// The camera of a description without [violations](crate::SceneDescription::violations), for pictures of
+    /// `resolution` pixels, which are square.
+    pub fn new(description: &CameraDescription, resolution: [u32; 2]) -> Self {
+        let position = DVec3::from_array(description.position);
+        let to_target = description.target.map(|target| DVec3::from_array(target) - position);
+        let view = description.direction.map(DVec3::from_array).or(to_target).unwrap_or(DVec3::NEG_Z);
+        let forward = view.normalize_or(DVec3::NEG_Z);
+        let right =
+            forward.cross(DVec3::from_array(description.up)).normalize_or(forward.any_orthonormal_vector());
+        let height = 2.0 * (0.5 * description.vertical_fov.to_radians()).tan();
+        Self {
+            position,
+            forward,
+            right,
+            up: right.cross(forward),
+            film_size: [height * f64::from(resolution[0]) / f64::from(resolution[1]), height],
+            resolution,
+            aperture_radius: description.aperture_radius,
+            focus_distance: description
+                .focus_distance
+                .unwrap_or_else(|| to_target.map_or(1.0, DVec3::length)),
+        }
+    }
+
+    /// Width and height of the picture, pixels.
+    pub fn resolution(&self) -> [u32; 2] {
+        self.resolution
+    }
+
+    /// The direction the camera looks in, of unit length.
+    pub fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
+    /// The ray through a point of a pixel (column, row; row 0 is the top) and a point of the lens.
+    ///
+    /// `film_u` in [0, 1)² is the place in the pixel from its left upper corner, `lens_u` in [0, 1)² that on the lens.
+    pub fn ray(&self, pixel: [u32; 2], film_u: [f64; 2], lens_u: [f64; 2]) -> Ray {
+        let x = ((f64::from(pixel[0]) + film_u[0]) / f64::from(self.resolution[0]) - 0.5) * self.film_size[0];
+        let y = (0.5 - (f64::from(pixel[1]) + film_u[1]) / f64::from(self.resolution[1])) * self.film_size[1];
+        let through_centre = self.forward + x * self.right + y * self.up;
+        if self.aperture_radius == 0.0 {
+            return Ray { origin: self.position, direction: through_centre.normalize() };
+        }
+        let [lens_x, lens_y] = concentric_disc(lens_u).map(|coordinate| coordinate * self.aperture_radius);
+        let on_lens = lens_x * self.right + lens_y * self.up;
+        let direction = (through_centre * self.focus_distance - on_lens).normalize();
+        Ray { origin: self.position + on_lens, direction }
+    }
+}
+
+/// The unit square to the unit disc, areas kept and neighbours kept together (Shirley & Chiu 1997).
+fn concentric_disc(u: [f64; 2]) -> [f64; 2] {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+    let [a, b] = u.map(|coordinate| 2.0 * coordinate - 1.0);
+    if a == 0.0 && b == 0.0 {
+        return [0.0, 0.0];
+    }
+    let (radius, angle) =
+        if a.abs() > b.abs() { (a, FRAC_PI_4 * b / a) } else { (b, FRAC_PI_2 - FRAC_PI_4 * a / b) };
+    [radius * angle.cos(), radius * angle.sin()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(aperture_radius: f64) -> Camera {
+        let description = CameraDescription {
+            position: [0.0, 0.0, 5.0],
+            target: Some([0.0, 0.0, 0.0]),
+            direction: None,
+            up: [0.0, 1.0, 0.0],
+            vertical_fov: 90.0,
+            aperture_radius,
+            focus_distance: None,
+        };
+        Camera::new(&description, [200, 100])
+    }
+
+    const CENTRE: [f64; 2] = [0.5, 0.5];
+
+    #[test]
+    fn seen_from_plus_z_world_x_is_on_the_right_and_y_is_at_the_top() {
+        let right = camera(0.0).ray([199, 50], CENTRE, CENTRE).direction;
+        let top = camera(0.0).ray([100, 0], CENTRE, CENTRE).direction;
+        assert!(right.x > 0.8 && right.z < 0.0, "{right}");
+        assert!(top.y > 0.6 && top.z < 0.0, "{top}");
+    }
+
+    #[test]
+    fn the_edges_of_the_film_are_at_the_field_of_view() {
+        let top = camera(0.0).ray([100, 0], [0.0, 0.0], CENTRE).direction;
+        assert!((top - DVec3::new(0.0, 1.0, -1.0).normalize()).length() < 1e-12, "{top}");
+        let left = camera(0.0).ray([0, 50], [0.0, 0.0], CENTRE).direction;
+        assert!((left - DVec3::new(-2.0, 0.0, -1.0).normalize()).length() < 1e-12, "{left}");
+    }
+
+    #[test]
+    fn all_rays_of_a_film_point_meet_in_the_plane_of_focus() {
+        let lens = camera(0.3);
+        for pixel in [[100, 50], [13, 77], [199, 0]] {
+            let pinhole = camera(0.0).ray(pixel, CENTRE, CENTRE);
+            let in_focus = pinhole.origin + pinhole.direction * (-5.0 / pinhole.direction.z);
+            for lens_u in [[0.0, 0.0], [0.9, 0.1], [0.3, 0.99], [0.5, 0.5]] {
+                let ray = lens.ray(pixel, CENTRE, lens_u);
+                assert!((ray.direction.length() - 1.0).abs() < 1e-12);
+                assert!((ray.origin - pinhole.origin).length() <= 0.3 + 1e-12);
+                let at_plane = ray.origin + ray.direction * (-5.0 / ray.direction.z);
+                assert!((at_plane - in_focus).length() < 1e-9, "{at_plane} {in_focus}");
+            }
+        }
+    }
+
+    #[test]
+    fn lens_points_are_uniform_on_the_disc() {
+        // Half the area lies within 1/sqrt(2) of the centre, a quarter in each quadrant.
+        let count = 1000;
+        let points: Vec<[f64; 2]> = (0..count * count)
+            .map(|i| [i % count, i / count].map(|k| (f64::from(k) + 0.5) / f64::from(count)))
+            .map(concentric_disc)
+            .collect();
+        let fraction = |is_in: fn(&[f64; 2]) -> bool| {
+            points.iter().filter(|point| is_in(point)).count() as f64 / points.len() as f64
+        };
+        assert!((fraction(|[x, y]| x * x + y * y < 0.5) - 0.5).abs() < 2e-3);
+        assert!((fraction(|[x, y]| *x > 0.0 && *y > 0.0) - 0.25).abs() < 2e-3);
+        assert!(fraction(|[x, y]| x * x + y * y > 1.0 + 1e-12) == 0.0);
+    }
+}

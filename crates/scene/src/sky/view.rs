@@ -1,0 +1,220 @@
+//! What a viewer sees in each direction: single scattering along the line of sight, and the ground through the air.
+//!
+//! L = ∫ T (σm pm(ν) S + σd pd(ν) S + (σm + σd) Ψ) dt + T Lg, with the sun's transmittance S, the cosine ν between line of
+//! sight and sun, and below the horizon the lit ground Lg = albedo / π · E. The strongly forward phase function of dust is
+//! left out of the table and put back for each direction, so that a coarse table (finest at the horizon) is enough.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+
+use super::atmosphere::{
+    Atmosphere, EARTH_RADIUS, densities, distance_to_ground, distance_to_space, dust_phase, molecular_phase,
+    radius_along,
+};
+use super::multiple_scattering::MultipleScattering;
+use super::spectrum::{self, COUNT, Spectrum, ToRgb};
+use crate::description::SkyDescription;
+use crate::light::{LightImage, uv_to_direction};
+
+const AZIMUTHS: usize = 33;
+const ELEVATIONS_OF_SKY: usize = 64;
+const ELEVATIONS_OF_GROUND: usize = 32;
+const STEPS: usize = 40;
+const IMAGE_SIZE: [usize; 2] = [1024, 512];
+/// A viewer on the ground itself would have no air before the ground.
+const LEAST_ALTITUDE: f64 = 1.0;
+
+/// The clear sky over a viewer. Radiance in units of 31,831 cd/m².
+#[derive(Debug, Clone)]
+pub struct Sky {
+    toward_sun: DVec3,
+    /// Horizontal direction to the sun.
+    sun_azimuth: DVec3,
+    sun_irradiance: DVec3,
+    /// Elevation of the horizon, radians; below 0 for a viewer above the ground.
+    horizon: f64,
+    sky: Vec<Sighted>,
+    ground: Vec<Sighted>,
+}
+
+/// What is seen along a line of sight.
+#[derive(Debug, Clone, Copy)]
+struct Sighted {
+    /// All radiance but what follows.
+    radiance: DVec3,
+    /// Sunlight scattered once by dust, over dust's phase function.
+    dust: DVec3,
+}
+
+impl Sky {
+    /// The sky of a description.
+    pub fn new(description: &SkyDescription) -> Self {
+        let toward_sun = description.toward_sun();
+        let radius = EARTH_RADIUS + description.altitude.max(LEAST_ALTITUDE);
+        let ground_albedo = spectrum::reflectance(description.ground_albedo.channels());
+        let atmosphere = Atmosphere::new(description.turbidity);
+        let zenith_angle = toward_sun.y.clamp(-1.0, 1.0).acos();
+        let multiple = MultipleScattering::new(&atmosphere, &ground_albedo, zenith_angle);
+        let air = Air {
+            atmosphere,
+            multiple,
+            sun: DVec3::new(zenith_angle.sin(), toward_sun.y, 0.0),
+            ground_albedo,
+        };
+
+        let to_rgb = ToRgb::new();
+        let scaled = |spectrum: &Spectrum| to_rgb.convert(spectrum) * description.intensity;
+        let sun_irradiance = scaled(&air.atmosphere.sun_transmittance(radius, toward_sun.y));
+        let horizon = -(EARTH_RADIUS / radius).min(1.0).acos();
+        let sky_irradiance = air.sky_irradiance();
+        let table =
+            |elevations: usize, elevation_at: &dyn Fn(f64) -> f64, sky_irradiance: Option<&Spectrum>| {
+                let mut table = Vec::with_capacity(elevations * AZIMUTHS);
+                for i in 0..elevations {
+                    let elevation = elevation_at(i as f64 / (elevations - 1) as f64);
+                    for j in 0..AZIMUTHS {
+                        let azimuth = PI * j as f64 / (AZIMUTHS - 1) as f64;
+                        let (radiance, dust) =
+                            air.line_of_sight(radius, elevation, azimuth, sky_irradiance, STEPS);
+                        table.push(Sighted { radiance: scaled(&radiance), dust: scaled(&dust) });
+                    }
+                }
+                table
+            };
+        let sky = table(ELEVATIONS_OF_SKY, &|t| horizon + (FRAC_PI_2 - horizon) * t * t, None);
+        let ground =
+            table(ELEVATIONS_OF_GROUND, &|t| horizon - (FRAC_PI_2 + horizon) * t * t, Some(&sky_irradiance));
+        let sun_azimuth = DVec3::new(toward_sun.x, 0.0, toward_sun.z).normalize_or(DVec3::NEG_Z);
+        Self { toward_sun, sun_azimuth, sun_irradiance, horizon, sky, ground }
+    }
+
+    /// Irradiance by the sun's disc on a surface that faces it; 0 when the sun is below the horizon.
+    pub fn sun_irradiance(&self) -> DVec3 {
+        self.sun_irradiance
+    }
+
+    /// Radiance from a direction (unit vector), the sun's disc left out.
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        let elevation = direction.y.clamp(-1.0, 1.0).asin();
+        let horizontal = DVec3::new(direction.x, 0.0, direction.z).normalize_or(self.sun_azimuth);
+        let azimuth = horizontal.dot(self.sun_azimuth).clamp(-1.0, 1.0).acos();
+
+        let (table, span) = if elevation >= self.horizon {
+            (&self.sky, FRAC_PI_2 - self.horizon)
+        } else {
+            (&self.ground, FRAC_PI_2 + self.horizon)
+        };
+        let elevations = table.len() / AZIMUTHS;
+        let x = ((elevation - self.horizon).abs() / span).clamp(0.0, 1.0).sqrt() * (elevations - 1) as f64;
+        let y = azimuth / PI * (AZIMUTHS - 1) as f64;
+        let (i, j) = ((x as usize).min(elevations - 2), (y as usize).min(AZIMUTHS - 2));
+        let (x, y) = (x - i as f64, y - j as f64);
+        let interpolate = |of: fn(&Sighted) -> DVec3| {
+            let at = |i: usize, j: usize| of(&table[i * AZIMUTHS + j]);
+            at(i, j).lerp(at(i, j + 1), y).lerp(at(i + 1, j).lerp(at(i + 1, j + 1), y), x)
+        };
+        interpolate(|sighted| sighted.radiance)
+            + dust_phase(direction.dot(self.toward_sun)) * interpolate(|sighted| sighted.dust)
+    }
+
+    /// The sky as an equirectangular picture.
+    pub fn to_image(&self) -> LightImage {
+        let [width, height] = IMAGE_SIZE;
+        let mut texels = Vec::with_capacity(width * height);
+        for row in 0..height {
+            for column in 0..width {
+                let [u, v] =
+                    [(column, width), (row, height)].map(|(at, count)| (at as f64 + 0.5) / count as f64);
+                texels.push(self.radiance(uv_to_direction(u, v)).as_vec3().to_array());
+            }
+        }
+        LightImage::mended(width, height, texels).0
+    }
+}
+
+/// The lit air in a frame whose y is the viewer's vertical and whose x is the sun's azimuth.
+struct Air {
+    atmosphere: Atmosphere,
+    multiple: MultipleScattering,
+    sun: DVec3,
+    ground_albedo: Spectrum,
+}
+
+impl Air {
+    /// Radiance along a line of sight without and only with the sunlight that dust scattered once, the latter over dust's
+    /// phase function. With the sky's irradiance of the ground, the line ends there; without, in space.
+    fn line_of_sight(
+        &self,
+        radius: f64,
+        elevation: f64,
+        azimuth: f64,
+        sky_irradiance: Option<&Spectrum>,
+        steps: usize,
+    ) -> (Spectrum, Spectrum) {
+        let (sin_elevation, cos_elevation) = elevation.sin_cos();
+        let direction =
+            DVec3::new(cos_elevation * azimuth.cos(), sin_elevation, cos_elevation * azimuth.sin());
+        let origin = DVec3::new(0.0, radius, 0.0);
+        let distance = match sky_irradiance {
+            Some(_) => distance_to_ground(radius, sin_elevation),
+            None => distance_to_space(radius, sin_elevation),
+        };
+        let molecular_phase = molecular_phase(direction.dot(self.sun));
+        let mut radiance = [0.0; COUNT];
+        let mut dust = [0.0; COUNT];
+        let mut transmittance = [1.0; COUNT];
+        let edge = |k: usize| distance * (k as f64 / steps as f64).powi(2);
+        for step in 0..steps {
+            let (near, far) = (edge(step), edge(step + 1));
+            let (along, length) = (0.5 * (near + far), far - near);
+            let here = radius_along(radius, sin_elevation, along);
+            let coefficients = self.atmosphere.coefficients(densities(here - EARTH_RADIUS));
+            let cos_sun = self.sun.dot(origin + direction * along) / here;
+            let sun = self.atmosphere.sun_transmittance(here, cos_sun);
+            let multiple = self.multiple.radiance(here - EARTH_RADIUS, cos_sun.clamp(-1.0, 1.0).acos());
+            for i in 0..COUNT {
+                let (molecules, dusts) =
+                    (coefficients.molecular_scattering[i], coefficients.dust_scattering[i]);
+                let through = (-coefficients.extinction[i] * length).exp();
+                // ∫ T dt over the step with its extinction constant.
+                let reached = transmittance[i] * (1.0 - through) / coefficients.extinction[i].max(1e-300);
+                radiance[i] +=
+                    reached * (molecules * molecular_phase * sun[i] + (molecules + dusts) * multiple[i]);
+                dust[i] += reached * dusts * sun[i];
+                transmittance[i] *= through;
+            }
+        }
+        if let Some(sky_irradiance) = sky_irradiance {
+            let cos_sun = self.sun.dot(origin + direction * distance) / EARTH_RADIUS;
+            let sun = self.atmosphere.sun_transmittance(EARTH_RADIUS, cos_sun);
+            for i in 0..COUNT {
+                let irradiance = sun[i] * cos_sun.max(0.0) + sky_irradiance[i];
+                radiance[i] += transmittance[i] * self.ground_albedo[i] / PI * irradiance;
+            }
+        }
+        (radiance, dust)
+    }
+
+    /// Irradiance of the ground by the sky alone.
+    fn sky_irradiance(&self) -> Spectrum {
+        const RINGS: usize = 12;
+        const SECTORS: usize = 12;
+        let mut irradiance = [0.0; COUNT];
+        for ring in 0..RINGS {
+            // Rings of equal ∫ cos θ dω: uniform in sin² of the zenith angle.
+            let elevation = (1.0 - (ring as f64 + 0.5) / RINGS as f64).sqrt().asin();
+            for sector in 0..SECTORS {
+                let azimuth = PI * (sector as f64 + 0.5) / SECTORS as f64;
+                let radius = EARTH_RADIUS + LEAST_ALTITUDE;
+                let (radiance, dust) = self.line_of_sight(radius, elevation, azimuth, None, STEPS / 2);
+                let cos_sun = elevation.cos() * azimuth.cos() * self.sun.x + elevation.sin() * self.sun.y;
+                let phase = dust_phase(cos_sun);
+                for i in 0..COUNT {
+                    irradiance[i] += (radiance[i] + phase * dust[i]) * PI / (RINGS * SECTORS) as f64;
+                }
+            }
+        }
+        irradiance
+    }
+}
