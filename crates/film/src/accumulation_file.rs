@@ -7,7 +7,7 @@
 //! u32       version of the format, 1
 //! u32       length of the header in bytes
 //! header    JSON: size, layers, planes, ranges of samples, progress of an interrupted pass, metadata
-//! blocks    for each plane, every 4096 pixels: u32 length, then LZ4 (block format)
+//! blocks    for each plane, every 1000 pixels: u32 length, then LZ4 (block format)
 //! u32       CRC-32 (of zlib) of all that stands before it
 //! ```
 //!

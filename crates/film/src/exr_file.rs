@@ -7,9 +7,9 @@
 
 use std::path::Path;
 
-use exr::meta::attribute::Chromaticities;
+use exr::meta::attribute::{Chromaticities, LineOrder};
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer,
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
     LayerAttributes, Text, Vec2, WritableImage,
 };
 
@@ -26,7 +26,11 @@ pub fn write_exr(path: &Path, film: &Film, metadata: &ImageMetadata) -> Result<(
         .map(|channel| AnyChannel::new(text(&channel.name), FlatSamples::F32(channel.values)))
         .collect();
     let size = Vec2(film.width() as usize, film.height() as usize);
-    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
     let layer = Layer::new(size, attributes(film, metadata), encoding, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(REC_709);

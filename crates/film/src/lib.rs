@@ -8,6 +8,7 @@
 
 mod accumulation_file;
 mod atomic_write;
+pub mod comparison;
 mod error;
 mod estimates;
 mod exr_file;

@@ -6,7 +6,7 @@ use crate::fixed_point::SquareSum;
 use crate::sums::PixelSums;
 
 /// Records in a block.
-const BLOCK: usize = 4096;
+const BLOCK: usize = 1000;
 
 /// A fixed number of bytes a pixel.
 pub trait Record: Sized {
