@@ -6,8 +6,23 @@
 #![forbid(unsafe_code)]
 
 mod blosc;
+mod dense;
+mod element;
 mod error;
+mod fault;
 mod grid;
+mod little_endian;
+mod nifti;
+mod npy;
+mod nvdb;
+mod open;
+mod raw;
+mod selection;
+mod vol;
 
+pub use element::{AxisOrder, ByteOrder, Element};
 pub use error::ReadError;
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
+pub use open::{Format, ReadRequest, VolumeFile, read, read_bytes};
+pub use raw::RawShape;
+pub use selection::GridSelection;
