@@ -7,9 +7,11 @@
 
 mod blosc;
 mod dense;
+mod dense_box;
 mod element;
 mod error;
 mod fault;
+mod float_tree;
 mod grid;
 mod little_endian;
 mod nifti;
@@ -19,6 +21,7 @@ mod open;
 mod raw;
 mod selection;
 mod vol;
+mod write;
 
 pub use element::{AxisOrder, ByteOrder, Element};
 pub use error::ReadError;
@@ -26,3 +29,4 @@ pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, 
 pub use open::{Format, ReadRequest, VolumeFile, read, read_bytes};
 pub use raw::RawShape;
 pub use selection::GridSelection;
+pub use write::{Codec, WriteError, write};

@@ -20,13 +20,15 @@
 //!
 //! Source: `nifti1.h` and `nifti2.h` of the NIfTI Data Format Working Group.
 
-use std::io::Read;
+use std::io::{Read, Write};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::dense::Dense;
+use crate::dense_box::DenseBox;
 use crate::element::{AxisOrder, ByteOrder, Element};
 use crate::fault::Fault;
+use crate::float_tree::FloatTree;
 use crate::{Grid, GridClass};
 
 const HEADER_1: usize = 348;
@@ -227,4 +229,46 @@ impl<'a> Fields<'a> {
             ))),
         }
     }
+}
+
+/// Writes the active box of a grid as float32, version 1, with its map as `sform`.
+pub(crate) fn write(out: &mut dyn Write, grid: &Grid) -> Result<(), Fault> {
+    let FloatTree::Scalar(tree) = FloatTree::of(&grid.values) else {
+        return Err(Fault::unsupported(
+            "NIfTI images of vectors are not written; write .npy, .vol, .vdb or .nvdb",
+        ));
+    };
+    let dense = DenseBox::of(&tree)?;
+    let first = DVec3::from_array(dense.min.map(f64::from));
+    let map = grid.index_to_world * DAffine3::from_translation(first);
+    // An extension flag of four zero bytes follows the header.
+    let mut header = vec![0; HEADER_1 + 4];
+    let mut put = |at: usize, bytes: &[u8]| header[at..at + bytes.len()].copy_from_slice(bytes);
+    put(0, &(HEADER_1 as i32).to_le_bytes());
+    put(40, &3i16.to_le_bytes());
+    put(76, &1f32.to_le_bytes());
+    for axis in 0..3 {
+        let edge = i16::try_from(dense.shape[axis]).map_err(|_| {
+            Fault::unsupported(
+                "an axis of more than 32767 voxels does not fit a NIfTI-1 file; write .npy or .nvdb",
+            )
+        })?;
+        put(42 + 2 * axis, &edge.to_le_bytes());
+        put(80 + 4 * axis, &(map.matrix3.col(axis).length() as f32).to_le_bytes());
+        let row = map.matrix3.row(axis).extend(map.translation[axis]).to_array();
+        for (column, value) in row.into_iter().enumerate() {
+            put(280 + 16 * axis + 4 * column, &(value as f32).to_le_bytes());
+        }
+    }
+    for axis in 3..7 {
+        put(42 + 2 * axis, &1i16.to_le_bytes());
+    }
+    put(70, &16i16.to_le_bytes());
+    put(72, &32i16.to_le_bytes());
+    put(108, &((HEADER_1 + 4) as f32).to_le_bytes());
+    put(112, &1f32.to_le_bytes());
+    put(254, &2i16.to_le_bytes());
+    put(344, b"n+1\0");
+    out.write_all(&header).map_err(Fault::Io)?;
+    dense.write(&tree, AxisOrder::XFastest, out)
 }

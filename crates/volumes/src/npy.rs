@@ -13,14 +13,16 @@
 //!
 //! Source: NumPy enhancement proposal 1 and `numpy.lib.format`.
 
-use std::io::Read;
+use std::io::{Read, Write};
 
 use glam::DAffine3;
 
 use crate::dense::Dense;
+use crate::dense_box::DenseBox;
 use crate::element::{AxisOrder, ByteOrder, Element};
 use crate::fault::Fault;
-use crate::{Grid, GridClass};
+use crate::float_tree::{FloatTree, Voxel};
+use crate::{Grid, GridClass, Tree};
 
 /// How every such file begins.
 pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
@@ -167,4 +169,35 @@ fn interleave(source: &mut impl Read, dense: &Dense) -> Result<Vec<u8>, Fault> {
         }
     }
     Ok(interleaved)
+}
+
+/// Writes the active box of a grid as a C-ordered array of 32-bit floats, of shape (X, Y, Z) or (X, Y, Z, 3).
+///
+/// Such a file has no room for the map or for where the box began.
+pub(crate) fn write(out: &mut dyn Write, grid: &Grid) -> Result<(), Fault> {
+    match FloatTree::of(&grid.values) {
+        FloatTree::Scalar(tree) => write_tree(out, &*tree),
+        FloatTree::Vector(tree) => write_tree(out, tree),
+    }
+}
+
+fn write_tree<T: Voxel>(out: &mut dyn Write, tree: &Tree<T>) -> Result<(), Fault> {
+    let dense = DenseBox::of(tree)?;
+    let [x, y, z] = dense.shape;
+    let channels = if T::CHANNELS == 3 { ", 3" } else { "" };
+    let mut header =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({x}, {y}, {z}{channels}), }}");
+    // Magic, version, length and header together are a multiple of 64 bytes and end with a line feed.
+    let whole = (MAGIC.len() + 4 + header.len() + 1).next_multiple_of(64);
+    let length = whole - MAGIC.len() - 4;
+    while header.len() + 1 < length {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut start = MAGIC.to_vec();
+    start.extend_from_slice(&[1, 0]);
+    start.extend_from_slice(&(length as u16).to_le_bytes());
+    start.extend_from_slice(header.as_bytes());
+    out.write_all(&start).map_err(Fault::Io)?;
+    dense.write(tree, AxisOrder::ZFastest, out)
 }

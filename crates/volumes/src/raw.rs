@@ -4,14 +4,16 @@
 //! endian and x fastest. Numbers are kept as they are (255 is 255), and voxel centres stand at integers of world
 //! space.
 
-use std::io::Read;
-use std::path::Path;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
 
 use glam::DAffine3;
 
 use crate::dense::Dense;
+use crate::dense_box::DenseBox;
 use crate::element::{AxisOrder, ByteOrder, Element};
 use crate::fault::Fault;
+use crate::float_tree::FloatTree;
 use crate::{Grid, GridClass};
 
 /// What a `.raw` file does not say about itself.
@@ -90,4 +92,41 @@ pub(crate) fn read(source: &mut impl Read, available: u64, raw: &RawShape) -> Re
         metadata: vec![("raw_type".to_owned(), format!("{element:?}").to_lowercase())],
         values: dense.read(source, Some(available))?,
     })
+}
+
+/// `path`, with the shape and type of what will be written in its name.
+pub(crate) fn name_with_shape(path: &Path, grid: &Grid) -> Result<PathBuf, Fault> {
+    let FloatTree::Scalar(tree) = FloatTree::of(&grid.values) else {
+        return Err(vectors());
+    };
+    let shape = DenseBox::of(&tree)?.shape;
+    let [x, y, z] = shape;
+    let written = RawShape {
+        shape,
+        element: Element::Float32,
+        byte_order: ByteOrder::Little,
+        axis_order: AxisOrder::XFastest,
+    };
+    match RawShape::from_file_name(path) {
+        Some(promised) if promised == written => Ok(path.to_path_buf()),
+        Some(_) => Err(Fault::Unsupported(format!(
+            "the name promises another shape or type than is written; leave them out or say {x}x{y}x{z}_float32"
+        ))),
+        None => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            Ok(path.with_file_name(format!("{stem}_{x}x{y}x{z}_float32.raw")))
+        }
+    }
+}
+
+/// Writes the active box of a grid as little-endian 32-bit floats, x fastest.
+pub(crate) fn write(out: &mut dyn Write, grid: &Grid) -> Result<(), Fault> {
+    match FloatTree::of(&grid.values) {
+        FloatTree::Scalar(tree) => DenseBox::of(&tree)?.write(&tree, AxisOrder::XFastest, out),
+        FloatTree::Vector(_) => Err(vectors()),
+    }
+}
+
+fn vectors() -> Fault {
+    Fault::unsupported("a .raw file of vectors would not be understood; write .npy, .vol, .vdb or .nvdb")
 }

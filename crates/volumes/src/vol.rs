@@ -13,15 +13,17 @@
 //!
 //! Source: the documentation of the `gridvolume` plugins of Mitsuba 0.6 and 3.
 
-use std::io::Read;
+use std::io::{Read, Write};
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use crate::dense::Dense;
+use crate::dense_box::DenseBox;
 use crate::element::{AxisOrder, ByteOrder, Element};
 use crate::fault::Fault;
+use crate::float_tree::{FloatTree, Voxel};
 use crate::little_endian::{f32_at, i32_at};
-use crate::{Grid, GridClass};
+use crate::{Grid, GridClass, Tree};
 
 /// How every such file begins.
 pub(crate) const MAGIC: &[u8] = b"VOL\x03";
@@ -78,4 +80,37 @@ pub(crate) fn read(source: &mut impl Read, available: u64) -> Result<Grid, Fault
         metadata: vec![("vol_encoding".to_owned(), format!("{element:?}").to_lowercase())],
         values,
     })
+}
+
+/// Writes the active box of a grid as float32, with its place in world space.
+pub(crate) fn write(out: &mut dyn Write, grid: &Grid) -> Result<(), Fault> {
+    let map = grid.index_to_world;
+    let cell = DVec3::new(map.matrix3.x_axis.x, map.matrix3.y_axis.y, map.matrix3.z_axis.z);
+    if map.matrix3 != DMat3::from_diagonal(cell) || cell.min_element() <= 0.0 {
+        return Err(Fault::unsupported(
+            "a .vol file holds only upright boxes, and this grid is turned or mirrored; write .vdb, .nvdb or .nii",
+        ));
+    }
+    match FloatTree::of(&grid.values) {
+        FloatTree::Scalar(tree) => write_tree(out, &*tree, &map),
+        FloatTree::Vector(tree) => write_tree(out, tree, &map),
+    }
+}
+
+fn write_tree<T: Voxel>(out: &mut dyn Write, tree: &Tree<T>, map: &DAffine3) -> Result<(), Fault> {
+    let dense = DenseBox::of(tree)?;
+    let least = DVec3::from_array(dense.min.map(f64::from)) - 0.5;
+    let greatest = least + DVec3::from_array(dense.shape.map(|edge| edge as f64));
+    let mut header = MAGIC.to_vec();
+    header.extend_from_slice(&1i32.to_le_bytes());
+    for count in dense.shape.into_iter().chain([T::CHANNELS]) {
+        header.extend_from_slice(&(count as i32).to_le_bytes());
+    }
+    for corner in [least, greatest] {
+        for coordinate in map.transform_point3(corner).to_array() {
+            header.extend_from_slice(&(coordinate as f32).to_le_bytes());
+        }
+    }
+    out.write_all(&header).map_err(Fault::Io)?;
+    dense.write(tree, AxisOrder::XFastest, out)
 }

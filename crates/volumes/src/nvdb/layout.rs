@@ -30,63 +30,55 @@ pub(super) const CODES_AT: usize = 96;
 /// The types of values a NanoVDB grid can have and that are read here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ValueType {
-    Float,
-    Double,
-    Int16,
-    Int32,
-    Int64,
-    Vec3f,
-    Vec3d,
-    Mask,
-    UInt32,
-    Boolean,
-    Fp4,
-    Fp8,
-    Fp16,
-    FpN,
-    UInt8,
+    Float = 1,
+    Double = 2,
+    Int16 = 3,
+    Int32 = 4,
+    Int64 = 5,
+    Vec3f = 6,
+    Vec3d = 7,
+    Mask = 8,
+    UInt32 = 10,
+    Boolean = 11,
+    Fp4 = 13,
+    Fp8 = 14,
+    Fp16 = 15,
+    FpN = 16,
+    UInt8 = 26,
 }
 
 impl ValueType {
     /// From the number in the file.
     pub(super) fn from_number(number: u32) -> Result<Self, Fault> {
-        Ok(match number {
-            1 => Self::Float,
-            2 => Self::Double,
-            3 => Self::Int16,
-            4 => Self::Int32,
-            5 => Self::Int64,
-            6 => Self::Vec3f,
-            7 => Self::Vec3d,
-            8 => Self::Mask,
-            10 => Self::UInt32,
-            11 => Self::Boolean,
-            13 => Self::Fp4,
-            14 => Self::Fp8,
-            15 => Self::Fp16,
-            16 => Self::FpN,
-            26 => Self::UInt8,
-            other => {
-                let name = match other {
-                    9 => "half",
-                    12 => "RGBA8",
-                    17 => "Vec4f",
-                    18 => "Vec4d",
-                    19 | 20 => "index",
-                    23 => "point",
-                    24 => "Vec3u8",
-                    25 => "Vec3u16",
-                    _ => {
-                        return Err(Fault::Damaged(format!(
-                            "corrupt: there is no NanoVDB grid type {other}"
-                        )));
-                    }
-                };
-                return Err(Fault::Unsupported(format!(
-                    "NanoVDB grids of type {name} are not read; write the grid as float or Vec3f"
-                )));
-            }
-        })
+        const ALL: [ValueType; 15] = {
+            use ValueType::*;
+            [
+                Float, Double, Int16, Int32, Int64, Vec3f, Vec3d, Mask, UInt32, Boolean, Fp4, Fp8, Fp16, FpN,
+                UInt8,
+            ]
+        };
+        if let Some(known) = ALL.into_iter().find(|known| known.number() == number) {
+            return Ok(known);
+        }
+        let name = match number {
+            9 => "half",
+            12 => "RGBA8",
+            17 => "Vec4f",
+            18 => "Vec4d",
+            19 | 20 => "index",
+            23 => "point",
+            24 => "Vec3u8",
+            25 => "Vec3u16",
+            other => return Err(Fault::Damaged(format!("corrupt: there is no NanoVDB grid type {other}"))),
+        };
+        Err(Fault::Unsupported(format!(
+            "NanoVDB grids of type {name} are not read; write the grid as float or Vec3f"
+        )))
+    }
+
+    /// The number in the file.
+    pub(super) fn number(self) -> u32 {
+        self as u32
     }
 
     /// Bytes of a value, and of each of its two statistics.
@@ -227,9 +219,14 @@ impl Layout {
         self.table_at(node) + node.children() * self.table_entry()
     }
 
+    /// Where minimum and maximum stand in an unquantised leaf.
+    pub(super) fn leaf_minimum_at(&self) -> usize {
+        LEAF_MASK_AT + LEAF_MASK
+    }
+
     /// Where the values of an unquantised leaf stand.
     pub(super) fn leaf_values_at(&self) -> usize {
-        align(self.after_statistics(LEAF_MASK_AT + LEAF_MASK), ALIGNMENT)
+        align(self.after_statistics(self.leaf_minimum_at()), ALIGNMENT)
     }
 
     /// Bytes of a leaf (of `FpN`: at least).

@@ -15,10 +15,14 @@
 //! Source: `NanoVDB.h` and `io/IO.h` of the OpenVDB project; Museth 2021, "NanoVDB: A GPU-Friendly and Portable VDB
 //! Data Structure For Real-Time Rendering And Simulation".
 
+mod build;
 mod grid;
 mod layout;
 mod tree;
 mod values;
+mod write;
+
+pub(crate) use write::write;
 
 use std::fmt;
 use std::io::{Read, Seek, SeekFrom};
