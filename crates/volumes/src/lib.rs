@@ -7,7 +7,12 @@
 
 pub mod bricks;
 mod blosc;
+mod dense;
+mod dense_box;
+mod element;
 mod error;
+mod fault;
+mod float_tree;
 mod grid;
 mod probe;
 mod selection;
@@ -20,3 +25,20 @@ pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, 
 pub use probe::Lookup;
 pub use selection::GridSelection;
 pub use statistics::{Components, GridStatistics};
+mod little_endian;
+mod nifti;
+mod npy;
+mod nvdb;
+mod open;
+mod raw;
+mod selection;
+mod vol;
+mod write;
+
+pub use element::{AxisOrder, ByteOrder, Element};
+pub use error::ReadError;
+pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
+pub use open::{Format, ReadRequest, VolumeFile, read, read_bytes};
+pub use raw::RawShape;
+pub use selection::GridSelection;
+pub use write::{Codec, WriteError, write};

@@ -1,0 +1,4 @@
+//! Claims about the readers and writers of every format but OpenVDB.
+
+mod corpus_nvdb;
+mod facts;
