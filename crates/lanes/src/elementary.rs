@@ -13,12 +13,12 @@ pub fn ln(x: f32) -> f32 {
     let exponent = (shifted as i32) >> 23;
     let mantissa = f32::from_bits((shifted & 0x007f_ffff) + SQRT_HALF_BITS);
     let f = mantissa - 1.0;
-    let mut q = -0.081_015_584_f32;
+    let mut q = -0.081_015_59_f32;
     q = q * f + 0.127_123_08;
     q = q * f - 0.129_722_39;
     q = q * f + 0.142_021_74;
     q = q * f - 0.166_422_48;
-    q = q * f + 0.200_014_69;
+    q = q * f + 0.200_014_7;
     q = q * f - 0.250_002_97;
     q = q * f + 0.333_333_3;
     let exponent = exponent as f32;
@@ -41,8 +41,8 @@ pub fn exp(x: f32) -> f32 {
     p = p * g + 1.339_531e-3;
     p = p * g + 9.618_04e-3;
     p = p * g + 5.550_340_6e-2;
-    p = p * g + 0.240_226_51;
-    p = p * g + 0.693_147_2;
+    p = p * g + 0.240_226_5;
+    p = p * g + std::f32::consts::LN_2;
     p = p * g + 1.0;
     let scale = f32::from_bits(((whole as i32 + 127) as u32) << 23);
     if x < -87.0 { 0.0 } else { p * scale }
@@ -56,7 +56,8 @@ pub fn sin_cos_turns(u: f32) -> (f32, f32) {
     let quarters = (u * 4.0 + ROUND) - ROUND;
     let r = u - quarters * 0.25;
     let r2 = r * r;
-    let sin = r * (6.283_185_3 + r2 * (-41.341_702 + r2 * (81.605_21 + r2 * (-76.698_73 + r2 * 41.503_42))));
+    let sin =
+        r * (std::f32::consts::TAU + r2 * (-41.341_7 + r2 * (81.605_2 + r2 * (-76.698_73 + r2 * 41.503_42))));
     let cos = 1.0 + r2 * (-19.739_209 + r2 * (64.939_33 + r2 * (-85.444_35 + r2 * 59.273_62)));
     let quadrant = quarters as i32;
     let (a, b) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };

@@ -1,21 +1,28 @@
 //! What is rendered: camera, film, media, lights; the native TOML scene file.
 //!
 //! Two halves. The *description* is what a person wrote: plain data that is read from and printed as TOML
-//! ([`SceneDocument`], [`SceneDescription`]). What is *ready to trace* is built from it.
+//! ([`SceneDocument`], [`SceneDescription`]). A [`Scene`], built from it, is ready to trace.
 
 #![forbid(unsafe_code)]
 
+mod build;
 mod camera;
 pub mod description;
 mod error;
 mod hash;
 pub mod light;
+mod medium;
+pub mod procedural;
+mod ready;
 pub mod sky;
 mod toml;
 
+pub use self::build::{BuiltScene, build};
 pub use self::camera::{Camera, Ray};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
 pub use self::hash::{SceneHash, scene_hash};
 pub use self::light::{Light, LightSample};
+pub use self::medium::{Density, Medium, Volume};
+pub use self::ready::Scene;
 pub use self::toml::{SceneDocument, json_schema};

@@ -5,8 +5,8 @@
 
 #![forbid(unsafe_code)]
 
-pub mod bricks;
 mod blosc;
+pub mod bricks;
 mod dense;
 mod dense_box;
 mod element;
@@ -14,31 +14,26 @@ mod error;
 mod fault;
 mod float_tree;
 mod grid;
-mod probe;
-mod selection;
-mod statistics;
-pub mod vdb;
-
-pub use bricks::{BrickGrid, Storage};
-pub use error::ReadError;
-pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
-pub use probe::Lookup;
-pub use selection::GridSelection;
-pub use statistics::{Components, GridStatistics};
 mod little_endian;
 mod nifti;
 mod npy;
 mod nvdb;
 mod open;
+mod probe;
 mod raw;
 mod selection;
+mod statistics;
+pub mod vdb;
 mod vol;
 mod write;
 
+pub use bricks::{BrickGrid, Storage};
 pub use element::{AxisOrder, ByteOrder, Element};
 pub use error::ReadError;
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
 pub use open::{Format, ReadRequest, VolumeFile, read, read_bytes};
+pub use probe::Lookup;
 pub use raw::RawShape;
 pub use selection::GridSelection;
+pub use statistics::{Components, GridStatistics};
 pub use write::{Codec, WriteError, write};

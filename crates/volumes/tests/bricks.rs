@@ -68,7 +68,7 @@ fn voxels_are_those_of_the_tree() {
     for seed in 0..20 {
         let mut draws = Draws(seed);
         let tree = random_tree(&mut draws, if seed % 2 == 0 { 0.0 } else { 0.25 });
-        let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32, |v| v).unwrap();
+        let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
         for _ in 0..3000 {
             let p = [0; 3].map(|_: i32| draws.below(400) as i32 - 260);
             assert_eq!(bricks.voxel(p), voxel(&tree, p), "seed {seed} at {p:?}");
@@ -82,7 +82,7 @@ fn trilinear_values_stay_within_the_bounds_of_their_segment() {
         let mut draws = Draws(seed);
         let tree = random_tree(&mut draws, if seed % 3 == 0 { 0.1 } else { 0.0 });
         for storage in [Storage::U8, Storage::F16, Storage::F32] {
-            let bricks = BrickGrid::from_tree(&tree, "t", storage, |v| v).unwrap();
+            let bricks = BrickGrid::from_tree(&tree, "t", storage).unwrap();
             for _ in 0..30 {
                 let origin = draws.point() * 400.0 - 260.0;
                 let mut direction = draws.point() * 400.0 - 260.0 - origin;
@@ -119,7 +119,7 @@ fn trilinear_values_stay_within_the_bounds_of_their_segment() {
 fn segments_cover_the_part_of_the_ray_inside_the_domain() {
     let mut draws = Draws(5);
     let tree = random_tree(&mut draws, 0.0);
-    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32, |v| v).unwrap();
+    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
     let [low, high] = bricks.domain();
     let middle = (low + high) * 0.5;
     for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
@@ -140,7 +140,7 @@ fn the_domain_holds_everything_that_differs_from_the_background() {
     // Inactive voxels with values are cut by design; here every voxel is active.
     tree.leaves.iter_mut().for_each(|leaf| leaf.active = [u64::MAX; 8]);
     tree.tiles.iter_mut().for_each(|tile| tile.active = true);
-    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32, |v| v).unwrap();
+    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
     let [low, high] = bricks.domain();
     for _ in 0..20_000 {
         let p = draws.point() * 420.0 - 270.0;
@@ -154,7 +154,7 @@ fn the_domain_holds_everything_that_differs_from_the_background() {
 fn a_huge_tile_costs_kilobytes() {
     let tile = Tile { origin: [-4096, 0, 4096], log2_edge: 12, value: 0.5, active: true };
     let tree = Tree { background: 0.0, tiles: vec![tile], leaves: vec![], leaf_values: vec![] };
-    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F16, |v| v).unwrap();
+    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F16).unwrap();
     assert!(bricks.memory_bytes() < 1 << 20, "{} bytes", bricks.memory_bytes());
     assert_eq!(bricks.voxel([-1, 4095, 4096]), 0.5);
     assert_eq!(bricks.voxel([0, 4095, 4096]), 0.0);
@@ -170,17 +170,17 @@ fn stray_voxels_far_apart_are_refused_or_small() {
         leaves: vec![leaf([0; 3]), leaf([distance; 3])],
         leaf_values: (0..1024).map(|i| i as f32).collect(),
     };
-    let far = BrickGrid::from_tree(&near_and_far(1 << 27), "t", Storage::F32, |v| v).unwrap();
+    let far = BrickGrid::from_tree(&near_and_far(1 << 27), "t", Storage::F32).unwrap();
     assert!(far.memory_bytes() < 4 << 20, "{} bytes", far.memory_bytes());
     assert_eq!(far.voxel([1 << 27; 3]), 512.0);
-    assert!(BrickGrid::from_tree(&near_and_far(0x7fff_fff0), "t", Storage::F32, |v| v).is_err());
+    assert!(BrickGrid::from_tree(&near_and_far(0x7fff_fff0), "t", Storage::F32).is_err());
 }
 
 #[test]
 fn one_random_tap_has_the_trilinear_mean() {
     let mut draws = Draws(3);
     let tree = random_tree(&mut draws, 0.0);
-    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32, |v| v).unwrap();
+    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
     let corner = DVec3::from_array(tree.leaves[0].origin.map(f64::from));
     for _ in 0..20 {
         let p = corner + draws.point() * 8.0;
@@ -204,7 +204,7 @@ fn non_finite_values_become_zero_and_are_counted() {
     values[77] = f32::INFINITY;
     let leaf = Leaf { origin: [0; 3], active: [u64::MAX; 8] };
     let tree = Tree { background: 0.0, tiles: vec![], leaves: vec![leaf], leaf_values: values };
-    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F16, |v| v).unwrap();
+    let bricks = BrickGrid::from_tree(&tree, "t", Storage::F16).unwrap();
     assert_eq!(bricks.non_finite(), 2);
     assert_eq!((bricks.voxel([0, 0, 3]), bricks.voxel([0, 0, 4])), (0.0, 1.0));
 }

@@ -60,24 +60,25 @@ impl Scalar for bool {
 impl BrickGrid {
     /// Builds bricks from a scalar grid of any type (integers and booleans as numbers).
     pub fn new(grid: &Grid, storage: Storage) -> Result<BrickGrid, BuildError> {
+        BrickGrid::mapped(grid, storage, |value| value)
+    }
+
+    /// Builds bricks from a scalar grid whose values are first passed through `map`.
+    pub fn mapped(grid: &Grid, storage: Storage, map: impl Fn(f32) -> f32) -> Result<BrickGrid, BuildError> {
+        let name = &grid.name;
         match &grid.values {
-            GridValues::Float(tree) => build(tree, &grid.name, storage, |v| v),
-            GridValues::Double(tree) => build(tree, &grid.name, storage, |v| v),
-            GridValues::Int32(tree) => build(tree, &grid.name, storage, |v| v),
-            GridValues::Int64(tree) => build(tree, &grid.name, storage, |v| v),
-            GridValues::Bool(tree) | GridValues::Mask(tree) => build(tree, &grid.name, storage, |v| v),
-            GridValues::Vec3(_) => Err(BuildError::NotScalar(grid.name.clone())),
+            GridValues::Float(tree) => build(tree, name, storage, map),
+            GridValues::Double(tree) => build(tree, name, storage, map),
+            GridValues::Int32(tree) => build(tree, name, storage, map),
+            GridValues::Int64(tree) => build(tree, name, storage, map),
+            GridValues::Bool(tree) | GridValues::Mask(tree) => build(tree, name, storage, map),
+            GridValues::Vec3(_) => Err(BuildError::NotScalar(name.clone())),
         }
     }
 
-    /// Builds bricks from a tree whose values are first passed through `map`.
-    pub fn from_tree(
-        tree: &Tree<f32>,
-        name: &str,
-        storage: Storage,
-        map: impl Fn(f32) -> f32,
-    ) -> Result<BrickGrid, BuildError> {
-        build(tree, name, storage, map)
+    /// Builds bricks from a tree; `name` is for messages.
+    pub fn from_tree(tree: &Tree<f32>, name: &str, storage: Storage) -> Result<BrickGrid, BuildError> {
+        build(tree, name, storage, |value| value)
     }
 }
 
@@ -85,11 +86,11 @@ fn build<T: Scalar>(
     tree: &Tree<T>,
     name: &str,
     storage: Storage,
-    map: impl Fn(T) -> T,
+    map: impl Fn(f32) -> f32,
 ) -> Result<BrickGrid, BuildError> {
     let mut non_finite = 0;
     let mut finite = |value: T| {
-        let value = map(value).scalar();
+        let value = map(value.scalar());
         if value.is_finite() {
             value
         } else {
@@ -104,7 +105,7 @@ fn build<T: Scalar>(
 
     let mut range = Bounds::EMPTY;
     for &value in &tree.leaf_values {
-        let value = map(value).scalar();
+        let value = map(value.scalar());
         if value.is_finite() {
             range = range.union(Bounds::of(value));
         }

@@ -1,0 +1,234 @@
+//! From a description to a scene ready to trace: volume files are read, grids chosen, everything put in its place.
+
+use glam::{DAffine3, DVec3};
+use std::path::Path;
+use std::sync::Arc;
+use tyndall_optics::PhaseFunction;
+use tyndall_volumes::{
+    AxisOrder, BrickGrid, ByteOrder, Element, Grid, GridClass, GridSelection, GridValues, RawShape,
+    ReadRequest,
+};
+
+use crate::description::{
+    GridMeaning, MediumDescription, PhaseDescription, ProceduralDescription, RawType, Storage,
+    VolumeDescription, VolumeSource,
+};
+use crate::light::build_lights;
+use crate::ready::light_probabilities;
+use crate::{Camera, Density, Medium, Scene, SceneDescription, SceneError, Volume, procedural};
+
+/// A scene, and what the user should know of how it came about.
+#[derive(Debug, Clone)]
+pub struct BuiltScene {
+    /// The scene.
+    pub scene: Scene,
+    /// Guesses and warnings, one line each.
+    pub notes: Vec<String>,
+}
+
+/// Builds the scene of `description`, whose file names are relative to `folder`.
+pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene, SceneError> {
+    let mut notes = Vec::new();
+    let mut volumes = Vec::new();
+    if let Some(medium) = &description.medium {
+        volumes.push(Volume {
+            name: "medium".into(),
+            world_to_local: DAffine3::IDENTITY,
+            density: Density::Everywhere,
+            medium: ready_medium(medium, "medium")?,
+        });
+    }
+    for (number, volume) in description.volumes.iter().enumerate() {
+        let name = volume.name.clone().unwrap_or_else(|| format!("volume.{number}"));
+        volumes.push(build_volume(volume, name, folder, &mut notes)?);
+    }
+    // Nothing collides where there is no extinction.
+    volumes.retain(|volume| volume.medium.mu_t > 0.0);
+
+    let lights = build_lights(&description.lights, folder)?;
+    notes.extend(lights.warnings);
+    if lights.lights.is_empty() && volumes.iter().all(|volume| volume.medium.emission == DVec3::ZERO) {
+        notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
+    }
+    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes));
+    let resolution = description.film.resolution;
+    let scene = Scene {
+        camera: Camera::new(&description.camera, resolution),
+        resolution,
+        volumes,
+        lights: lights.lights,
+        light_probabilities,
+        max_depth: description.render.max_depth,
+    };
+    Ok(BuiltScene { scene, notes })
+}
+
+fn build_volume(
+    description: &VolumeDescription,
+    name: String,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Volume, SceneError> {
+    let source = description.source().map_err(|(_, message)| SceneError::file(Path::new(&name), message))?;
+    let to_scene =
+        description.transform.as_ref().map_or(DAffine3::IDENTITY, |transform| transform.to_affine());
+    let (density, local_to_volume) = match source {
+        VolumeSource::File(file) => {
+            let path = folder.join(file);
+            let grid = read_grid(description, &path, notes)?;
+            let bricks = build_bricks(description, &grid, &path, notes)?;
+            (Density::Grid(Arc::new(bricks)), grid.index_to_world)
+        }
+        VolumeSource::Box(cuboid) => {
+            let [min, max] = [cuboid.min, cuboid.max].map(DVec3::from_array);
+            (Density::Box { min, max }, DAffine3::IDENTITY)
+        }
+        VolumeSource::Sphere(sphere) => {
+            let place = DAffine3::from_translation(DVec3::from_array(sphere.center));
+            (Density::Sphere, place * DAffine3::from_scale(DVec3::splat(sphere.radius)))
+        }
+        VolumeSource::Slab(slab) => {
+            (Density::Slab { bottom: slab.bottom, top: slab.top }, DAffine3::IDENTITY)
+        }
+        VolumeSource::Procedural(ProceduralDescription::Cumulus { seed, resolution, center, size }) => {
+            let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size);
+            let bricks = build_bricks(description, &grid, Path::new(&name), notes)?;
+            (Density::Grid(Arc::new(bricks)), grid.index_to_world)
+        }
+    };
+    let local_to_world = to_scene * local_to_volume;
+    let world_to_local = local_to_world.inverse();
+    if !world_to_local.is_finite() {
+        return Err(SceneError::file(
+            Path::new(&name),
+            "its transform is singular: it flattens the volume; give scales other than 0",
+        ));
+    }
+    let medium = ready_medium(&description.medium, &name)?;
+    Ok(Volume { name, world_to_local, density, medium })
+}
+
+fn ready_medium(description: &MediumDescription, name: &str) -> Result<Medium, SceneError> {
+    let coefficients =
+        description.coefficients().map_err(|(_, message)| SceneError::file(Path::new(name), message))?;
+    let phase_function = match description.phase {
+        PhaseDescription::Isotropic => PhaseFunction::Isotropic,
+        PhaseDescription::Hg { g } => PhaseFunction::HenyeyGreenstein { g },
+    };
+    let emission = description.emission.map_or(DVec3::ZERO, |emission| emission.channels());
+    Ok(Medium { mu_t: coefficients.mu_t, albedo: coefficients.albedo, phase_function, emission })
+}
+
+/// Reads the grid that the description names, or the one that is most likely meant.
+fn read_grid(
+    description: &VolumeDescription,
+    path: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Grid, SceneError> {
+    let grids = match &description.grid {
+        Some(name) => GridSelection::Names(vec![name.clone()]),
+        None => GridSelection::All,
+    };
+    let raw = description.raw_shape.map(|shape| RawShape {
+        shape: shape.map(|n| n as usize),
+        element: element(description.raw_type.unwrap_or(RawType::U8)),
+        byte_order: ByteOrder::Little,
+        axis_order: AxisOrder::XFastest,
+    });
+    let file = tyndall_volumes::read(path, &ReadRequest { grids, raw }).map_err(|error| {
+        let message = error.to_string();
+        let prefix = format!("{}: ", path.display());
+        SceneError::file(path, message.strip_prefix(&prefix).unwrap_or(&message))
+    })?;
+    let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
+    let count = file.grids.len();
+    let Some(grid) = choose_density(file.grids) else {
+        return Err(SceneError::file(path, format!("has no scalar grid; it has {}", names.join(", "))));
+    };
+    if count > 1 {
+        notes.push(format!(
+            "{}: of the grids {} `{}` is rendered",
+            path.display(),
+            names.join(", "),
+            grid.name
+        ));
+    }
+    Ok(grid)
+}
+
+/// The grid that is a density by its name, by its class, or at least by its type.
+pub(crate) fn choose_density(grids: Vec<Grid>) -> Option<Grid> {
+    let rank = |grid: &Grid| {
+        let name = grid.name.to_ascii_lowercase();
+        let by_name = match name.as_str() {
+            "density" => 0,
+            _ if name.contains("density") => 1,
+            _ if name.contains("temperature") || name.contains("flame") || name.contains("heat") => 3,
+            _ => 2,
+        };
+        (by_name, grid.class != GridClass::FogVolume)
+    };
+    grids.into_iter().filter(|grid| !matches!(grid.values, GridValues::Vec3(_))).min_by_key(rank)
+}
+
+fn build_bricks(
+    description: &VolumeDescription,
+    grid: &Grid,
+    path: &Path,
+    notes: &mut Vec<String>,
+) -> Result<BrickGrid, SceneError> {
+    let storage = match description.storage {
+        Some(Storage::U8) => tyndall_volumes::Storage::U8,
+        Some(Storage::F32) => tyndall_volumes::Storage::F32,
+        Some(Storage::F16) | None => tyndall_volumes::Storage::F16,
+    };
+    let is_distance = match description.values {
+        Some(meaning) => meaning == GridMeaning::SignedDistance,
+        None => grid.class == GridClass::LevelSet,
+    };
+    let bricks = if is_distance {
+        if description.values.is_none() {
+            notes.push(format!(
+                "{}: `{}` is a level set: density is 1 inside, 0 outside, with a ramp of one voxel",
+                path.display(),
+                grid.name
+            ));
+        }
+        // The surface is where the distance is 0; a voxel's edge is the cube root of its volume.
+        let voxel = grid.index_to_world.matrix3.determinant().abs().cbrt() as f32;
+        BrickGrid::mapped(grid, storage, |distance| (0.5 - distance / voxel).clamp(0.0, 1.0))
+    } else {
+        BrickGrid::new(grid, storage)
+    };
+    let bricks = bricks.map_err(|error| SceneError::file(path, error.to_string()))?;
+    if bricks.non_finite() > 0 {
+        notes.push(format!(
+            "{}: {} values of `{}` are not finite and count as 0",
+            path.display(),
+            bricks.non_finite(),
+            grid.name
+        ));
+    }
+    if bricks.bounds().min < 0.0 {
+        notes.push(format!("{}: negative values of `{}` count as 0", path.display(), grid.name));
+    }
+    Ok(bricks)
+}
+
+fn element(raw_type: RawType) -> Element {
+    match raw_type {
+        RawType::U8 => Element::UInt8,
+        RawType::U16 => Element::UInt16,
+        RawType::I16 => Element::Int16,
+        RawType::F16 => Element::Float16,
+        RawType::F32 => Element::Float32,
+        RawType::F64 => Element::Float64,
+    }
+}
+
+/// Radius of a sphere around the bounded volumes.
+fn scene_radius(volumes: &[Volume]) -> f64 {
+    let boxes = volumes.iter().filter_map(Volume::world_box);
+    let all = boxes.reduce(|[low, high], [min, max]| [low.min(min), high.max(max)]);
+    all.map_or(1.0, |[min, max]| 0.5 * (max - min).length())
+}

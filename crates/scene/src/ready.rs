@@ -1,0 +1,119 @@
+//! A scene ready to trace.
+
+use glam::DVec3;
+
+use crate::light::Light;
+use crate::{Camera, Volume};
+
+/// Everything that transport needs, in world space.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The camera.
+    pub camera: Camera,
+    /// Columns and rows of the picture.
+    pub resolution: [u32; 2],
+    /// Media; where they overlap their coefficients add.
+    pub volumes: Vec<Volume>,
+    /// Lights.
+    pub lights: Vec<Light>,
+    /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
+    /// well by themselves, and sums to 1 unless it is 0 for all.
+    pub light_probabilities: Vec<f64>,
+    /// Greatest number of scattering events on a path; unlimited if absent.
+    pub max_depth: Option<u32>,
+}
+
+impl Scene {
+    /// The light for next-event estimation at `u` in [0, 1), and the probability with which it was drawn.
+    pub fn choose_light(&self, u: f64) -> Option<(&Light, f64)> {
+        let mut rest = u;
+        let mut last = None;
+        for (light, &probability) in self.lights.iter().zip(&self.light_probabilities) {
+            if probability <= 0.0 {
+                continue;
+            }
+            last = Some((light, probability));
+            if rest < probability {
+                break;
+            }
+            rest -= probability;
+        }
+        last
+    }
+}
+
+/// Probabilities for next-event estimation, in proportion to the light that enters a scene of radius
+/// `scene_radius`, times its unevenness over directions.
+///
+/// Light that comes evenly from everywhere is found best by directions drawn from the phase function; a shadow ray
+/// would only repeat that work.
+pub(crate) fn light_probabilities(lights: &[Light], scene_radius: f64) -> Vec<f64> {
+    let weights: Vec<f64> =
+        lights.iter().map(|light| light.selection_weight(scene_radius) * unevenness(light)).collect();
+    let total: f64 = weights.iter().sum();
+    let share = |weight: f64| if total > 0.0 && total.is_finite() { weight / total } else { 0.0 };
+    weights.into_iter().map(share).collect()
+}
+
+/// 1 − (mean L)²/mean(L²) over all directions: 0 for constant light, near 1 for a bright spot.
+fn unevenness(light: &Light) -> f64 {
+    if matches!(light, Light::Constant(_)) {
+        return 0.0;
+    }
+    let luminance = |radiance: DVec3| radiance.element_sum();
+    let (mut first, mut second) = (0.0, 0.0);
+    let n = 32;
+    for i in 0..n * n {
+        let u = [f64::from(i % n), f64::from(i / n)].map(|k| (k + 0.5) / f64::from(n));
+        let sample = light.sample(DVec3::ZERO, u);
+        if sample.is_delta {
+            return 1.0;
+        }
+        let over_pdf = luminance(sample.radiance_over_pdf);
+        first += over_pdf;
+        second += over_pdf * luminance(light.radiance(sample.toward));
+    }
+    let count = f64::from(n * n);
+    let (mean, mean_square) = (first / count, second / count);
+    let sphere = 4.0 * std::f64::consts::PI;
+    if mean_square > 0.0 { (1.0 - mean * mean / (sphere * mean_square)).max(0.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::{ConstantLight, DistantLight, SunLight};
+
+    fn constant() -> Light {
+        Light::Constant(ConstantLight::new(DVec3::ONE))
+    }
+
+    #[test]
+    fn even_light_is_left_to_the_phase_function() {
+        let distant = Light::Distant(DistantLight::new(DVec3::NEG_Y, DVec3::ONE));
+        assert_eq!(light_probabilities(&[constant(), distant], 1.0), [0.0, 1.0]);
+        assert_eq!(light_probabilities(&[constant()], 1.0), [0.0]);
+        let sun = Light::Sun(SunLight::new(DVec3::Y, DVec3::ONE, 0.5));
+        assert!(unevenness(&sun) > 0.99);
+    }
+
+    #[test]
+    fn lights_are_drawn_with_their_probabilities() {
+        let light = |strength: f64| Light::Distant(DistantLight::new(DVec3::NEG_Y, DVec3::splat(strength)));
+        let lights = vec![light(1.0), constant(), light(3.0)];
+        let light_probabilities = light_probabilities(&lights, 2.0);
+        assert_eq!(light_probabilities, [0.25, 0.0, 0.75]);
+        let camera = Camera::new(&Default::default(), [1, 1]);
+        let scene = Scene {
+            camera,
+            resolution: [1, 1],
+            volumes: vec![],
+            lights,
+            light_probabilities,
+            max_depth: None,
+        };
+        assert_eq!(scene.choose_light(0.2).map(|(_, p)| p), Some(0.25));
+        assert_eq!(scene.choose_light(0.26).map(|(_, p)| p), Some(0.75));
+        assert_eq!(scene.choose_light(1.0 - 1e-16).map(|(_, p)| p), Some(0.75));
+    }
+}

@@ -1,0 +1,172 @@
+//! The volumes as the fast engine sees them: f32, about a common centre, grids in local voxel coordinates.
+
+use glam::{Affine3A, DAffine3, DVec3, Vec3};
+use tyndall_optics::PhaseFunction;
+use tyndall_scene::{Density, Ray, Scene, Volume};
+use tyndall_volumes::BrickGrid;
+
+/// Everything in f32 is kept relative to a point amid the volumes, so that a scene far from the origin loses no
+/// digits.
+pub(crate) struct FastScene<'a> {
+    pub scene: &'a Scene,
+    pub centre: DVec3,
+    pub volumes: Vec<FastVolume<'a>>,
+}
+
+pub(crate) struct FastVolume<'a> {
+    pub kind: Kind<'a>,
+    pub mu_t: f32,
+    pub albedo: Vec3,
+    pub phase: Phase,
+    /// (1 − albedo)·Le: what a collision adds.
+    pub emission: Vec3,
+}
+
+pub(crate) enum Kind<'a> {
+    /// A homogeneous density; intersected in f64, which happens once a ray.
+    Homogeneous(&'a Volume),
+    Grid(FastGrid<'a>),
+}
+
+pub(crate) struct FastGrid<'a> {
+    pub grid: &'a BrickGrid,
+    /// Centred world space to local voxel coordinates (index space less the table's origin).
+    pub to_local: Affine3A,
+    /// The domain in local voxel coordinates.
+    pub min: Vec3,
+    pub max: Vec3,
+}
+
+impl<'a> FastScene<'a> {
+    pub fn new(scene: &'a Scene) -> FastScene<'a> {
+        let boxes: Vec<[DVec3; 2]> = scene.volumes.iter().filter_map(Volume::world_box).collect();
+        let centre = match boxes.split_first() {
+            None => DVec3::ZERO,
+            Some((&[min, max], rest)) => {
+                let all = rest.iter().fold((min, max), |(low, high), b| (low.min(b[0]), high.max(b[1])));
+                (all.0 + all.1) * 0.5
+            }
+        };
+        let volumes = scene.volumes.iter().map(|volume| FastVolume::new(volume, centre)).collect();
+        FastScene { scene, centre, volumes }
+    }
+
+    pub fn to_world(&self, position: Vec3) -> DVec3 {
+        position.as_dvec3() + self.centre
+    }
+
+    /// A ray of the pool in f64.
+    pub fn world_ray(&self, origin: Vec3, direction: Vec3) -> Ray {
+        Ray { origin: self.to_world(origin), direction: direction.as_dvec3() }
+    }
+}
+
+impl<'a> FastVolume<'a> {
+    fn new(volume: &'a Volume, centre: DVec3) -> FastVolume<'a> {
+        let medium = &volume.medium;
+        let kind = match &volume.density {
+            Density::Grid(grid) => {
+                let origin = DVec3::from_array(grid.origin().map(f64::from));
+                let to_local = DAffine3::from_translation(-origin)
+                    * volume.world_to_local
+                    * DAffine3::from_translation(centre);
+                let [min, max] = grid.domain();
+                Kind::Grid(FastGrid {
+                    grid,
+                    to_local: to_local.as_affine3a(),
+                    min: (min - origin).as_vec3(),
+                    max: (max - origin).as_vec3(),
+                })
+            }
+            _ => Kind::Homogeneous(volume),
+        };
+        FastVolume {
+            kind,
+            mu_t: medium.mu_t as f32,
+            albedo: medium.albedo.as_vec3(),
+            phase: Phase::new(&medium.phase_function),
+            emission: ((DVec3::ONE - medium.albedo) * medium.emission).as_vec3(),
+        }
+    }
+}
+
+/// A phase function in f32; [`PhaseFunction`] is its oracle.
+#[derive(Clone, Copy)]
+pub(crate) enum Phase {
+    Isotropic,
+    HenyeyGreenstein { g: f32 },
+}
+
+impl Phase {
+    fn new(phase: &PhaseFunction) -> Phase {
+        match *phase {
+            PhaseFunction::HenyeyGreenstein { g } if g.abs() > 1e-3 => {
+                Phase::HenyeyGreenstein { g: g as f32 }
+            }
+            // Below |g| = 1e-3 the f32 inverse loses its digits; to that order the phase function is isotropic to
+            // within 0.3 %, and a picture, which g enters through 1 − g, to within 0.1 %.
+            PhaseFunction::HenyeyGreenstein { .. } | PhaseFunction::Isotropic => Phase::Isotropic,
+        }
+    }
+
+    #[inline(always)]
+    pub fn value(self, cos_theta: f32) -> f32 {
+        const INVERSE_SPHERE: f32 = 0.25 * std::f32::consts::FRAC_1_PI;
+        match self {
+            Phase::Isotropic => INVERSE_SPHERE,
+            Phase::HenyeyGreenstein { g } => {
+                // (1 − g)² + 2g(1 − cos) keeps its digits at the forward peak.
+                let denominator = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cos_theta);
+                INVERSE_SPHERE * (1.0 - g * g) / (denominator * denominator.sqrt())
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub fn sample(self, before: Vec3, u: [f32; 2]) -> Vec3 {
+        let cos_theta = match self {
+            Phase::Isotropic => 2.0 * u[0] - 1.0,
+            Phase::HenyeyGreenstein { g } => {
+                let ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * u[0]);
+                ((1.0 + g * g - ratio * ratio) / (2.0 * g)).clamp(-1.0, 1.0)
+            }
+        };
+        let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+        let (sin_phi, cos_phi) = tyndall_lanes::sin_cos_turns(u[1]);
+        let (tangent, bitangent) = before.any_orthonormal_pair();
+        let after = tangent * (sin_theta * cos_phi) + bitangent * (sin_theta * sin_phi) + before * cos_theta;
+        // One Newton step of the inverse square root about 1 keeps thousands of turns at unit length.
+        after * (1.5 - 0.5 * after.length_squared())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn f32_phase_functions_follow_the_f64_ones() {
+        for phase in [
+            PhaseFunction::Isotropic,
+            PhaseFunction::HenyeyGreenstein { g: -0.5 },
+            PhaseFunction::HenyeyGreenstein { g: 0.002 },
+            PhaseFunction::HenyeyGreenstein { g: 0.85 },
+            PhaseFunction::HenyeyGreenstein { g: 0.99 },
+        ] {
+            let fast = Phase::new(&phase);
+            for i in 0..=1000 {
+                let cos = -1.0 + i as f32 * 0.002;
+                let truth = phase.value(f64::from(cos));
+                assert!((f64::from(fast.value(cos)) / truth - 1.0).abs() < 2e-5, "{phase:?} at {cos}");
+            }
+            for i in 0..1000 {
+                let u = (i as f32 + 0.5) / 1000.0;
+                let before = Vec3::new(0.48, -0.6, 0.64);
+                let after = fast.sample(before, [u, 0.3]);
+                let truth = phase.sample_cosine(f64::from(u));
+                assert!((f64::from(after.dot(before)) - truth).abs() < 2e-4, "{phase:?} at {u}");
+                assert!((after.length() - 1.0).abs() < 1e-6);
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The reference integrator: a path tracer of the volume rendering equation, one path at a time, in f64.
+//!
+//!   L(x,ω) = ∫₀^z T(x,y) [ μa(y) Le(y) + μs(y) Ls(y,ω) ] dy + T(x,z) Lo(ω),   Ls(y,ω) = ∫ f_p(ω,ω′) L(y,ω′) dω′
+//!
+//! It is plain to read and is the oracle for every faster way. Term by term:
+//! - y is drawn with density μt·T by distance sampling, so T μt cancels and a collision leaves
+//!   (1 − albedo)·Le + albedo·Ls, while a ray that leaves without one has met T·Lo;
+//! - Ls is split between next-event estimation (a light is drawn, the transmittance towards it estimated) and
+//!   the continued path (a direction is drawn from the phase function), joined by multiple importance sampling with
+//!   the balance heuristic (Veach 1997, chapter 9);
+//! - a path ends when it leaves, at `max_depth` scattering events, or by Russian roulette on its throughput.
+
+use glam::DVec3;
+use tyndall_film::Sample;
+use tyndall_lanes::Random;
+use tyndall_scene::{Ray, Scene, Volume};
+
+use crate::distance::sample_distance;
+use crate::transmittance::estimate_transmittance;
+
+/// Throughput below which roulette is played.
+const ROULETTE_THROUGHPUT: f64 = 0.25;
+
+/// One estimate of the radiance that arrives along `ray`, sorted into the film's layers.
+pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
+    let mut layers = Layers::default();
+    let mut throughput = DVec3::ONE;
+    // Density with which the ray's direction was drawn from a phase function; none for the camera's own ray.
+    let mut phase_pdf = None;
+    let mut scatterings = 0;
+
+    loop {
+        let Some((distance, volume)) = first_collision(scene, &ray, random) else {
+            layers.add_in_scattered(
+                scatterings,
+                throughput * escaped_radiance(scene, ray.direction, phase_pdf),
+            );
+            break;
+        };
+        let position = ray.at(distance);
+        let medium = &volume.medium;
+        if scatterings == 0 {
+            layers.first_collision(distance, medium.albedo);
+        }
+
+        layers.emission += throughput * (DVec3::ONE - medium.albedo) * medium.emission;
+
+        if scene.max_depth.is_some_and(|depth| scatterings >= depth) {
+            break;
+        }
+        throughput *= medium.albedo;
+        if !survives_roulette(&mut throughput, random) {
+            break;
+        }
+        scatterings += 1;
+
+        let direct = next_event(scene, position, ray.direction, volume, random);
+        layers.add_in_scattered(scatterings, throughput * direct);
+
+        let onward = medium.phase_function.sample(ray.direction, [random.f64(), random.f64()]);
+        phase_pdf = Some(medium.phase_function.value(ray.direction.dot(onward)));
+        ray = Ray { origin: position, direction: onward };
+    }
+    layers.into_sample()
+}
+
+/// The nearest collision with any of the volumes: overlapping media are independent of each other, so the first of
+/// their first collisions follows the sum of their extinctions.
+fn first_collision<'a>(scene: &'a Scene, ray: &Ray, random: &mut Random) -> Option<(f64, &'a Volume)> {
+    let mut nearest = None;
+    let mut end = f64::INFINITY;
+    for volume in &scene.volumes {
+        if let Some(distance) = sample_distance(volume, ray, end, random) {
+            end = distance;
+            nearest = Some((distance, volume));
+        }
+    }
+    nearest
+}
+
+/// Lo: radiance of the infinite lights in `direction`, each weighted against next-event estimation having drawn it.
+fn escaped_radiance(scene: &Scene, direction: DVec3, phase_pdf: Option<f64>) -> DVec3 {
+    scene
+        .lights
+        .iter()
+        .zip(&scene.light_probabilities)
+        .map(|(light, probability)| {
+            let weight = match phase_pdf {
+                Some(phase_pdf) => phase_pdf / (phase_pdf + probability * light.pdf(direction)),
+                None => 1.0,
+            };
+            light.radiance(direction) * weight
+        })
+        .sum()
+}
+
+/// Next-event estimation of ∫ f_p L dω over the light that arrives unscattered at `position`.
+fn next_event(scene: &Scene, position: DVec3, before: DVec3, volume: &Volume, random: &mut Random) -> DVec3 {
+    let Some((light, probability)) = scene.choose_light(random.f64()) else {
+        return DVec3::ZERO;
+    };
+    let sample = light.sample(position, [random.f64(), random.f64()]);
+    let phase = volume.medium.phase_function.value(before.dot(sample.toward));
+    let light_pdf = probability * sample.pdf;
+    let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + phase) };
+    let unshadowed = sample.radiance_over_pdf * (phase * weight / probability);
+    if unshadowed == DVec3::ZERO {
+        return DVec3::ZERO;
+    }
+    let shadow_ray = Ray { origin: position, direction: sample.toward };
+    let mut transmittance = 1.0;
+    for volume in &scene.volumes {
+        transmittance *= estimate_transmittance(volume, &shadow_ray, sample.distance, random);
+        if transmittance == 0.0 {
+            return DVec3::ZERO;
+        }
+    }
+    unshadowed * transmittance
+}
+
+/// Ends a weak path with a probability that its survivors' weight makes up for.
+fn survives_roulette(throughput: &mut DVec3, random: &mut Random) -> bool {
+    let strength = throughput.max_element();
+    if strength >= ROULETTE_THROUGHPUT {
+        return true;
+    }
+    let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
+    if random.f64() >= probability {
+        return false;
+    }
+    *throughput /= probability;
+    true
+}
+
+/// The path's contributions by what made them.
+#[derive(Default)]
+struct Layers {
+    background: DVec3,
+    emission: DVec3,
+    single: DVec3,
+    multiple: DVec3,
+    collision: Option<(f64, DVec3)>,
+}
+
+impl Layers {
+    fn first_collision(&mut self, distance: f64, albedo: DVec3) {
+        self.collision = Some((distance, albedo));
+    }
+
+    fn add_in_scattered(&mut self, scatterings: u32, radiance: DVec3) {
+        match scatterings {
+            0 => self.background += radiance,
+            1 => self.single += radiance,
+            _ => self.multiple += radiance,
+        }
+    }
+
+    fn into_sample(self) -> Sample {
+        let radiance = self.background + self.emission + self.single + self.multiple;
+        let (depth, albedo) = self.collision.unwrap_or_default();
+        Sample {
+            radiance: radiance.as_vec3().to_array(),
+            hit: self.collision.is_some(),
+            depth: depth as f32,
+            albedo: albedo.as_vec3().to_array(),
+            emission: self.emission.as_vec3().to_array(),
+            single: self.single.as_vec3().to_array(),
+            multiple: self.multiple.as_vec3().to_array(),
+        }
+    }
+}
