@@ -10,7 +10,8 @@
 //! the pixels, which a handful of fireflies would otherwise decide. The standard error SE comes from the
 //! `StandardError` layers of both pictures if they have them; if not, from the scatter of the differences between
 //! pixels, which takes them for independent and B for far less noisy, or at least for noise of its own. Either way
-//! two renders with the same seed are *not* independent and look more alike than SE says.
+//! two renders with the same seed are *not* independent and look more alike than SE says. A z is normal only as far as
+//! the means are: with few samples and rare bright ones, blocks stray further than stated.
 
 mod perceptual;
 mod picture;
