@@ -1,2 +1,73 @@
-//! The `tyndall` command.
-fn main() {}
+//! The `tyndall` command: pictures of clouds, smoke, fire, fog, milk and air, with their error.
+
+mod diff;
+mod merge;
+mod output;
+mod render;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Light in clouds, smoke, fire, fog, milk and air: unbiased pictures of volumes, with their error
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "\
+Examples:
+  tyndall                                        renders the built-in cumulus to cloud.exr and cloud.png
+  tyndall render smoke.vdb -o smoke.png          a picture of an OpenVDB file: light, camera, density are chosen
+  tyndall render smoke.vdb --print-scene > smoke.toml    ... and the choices as a scene file, to go on from
+  tyndall render smoke.toml -o smoke.exr --error 1%      renders until the error is 1 %
+  tyndall diff a.exr b.exr                       whether two pictures differ beyond their noise"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Render(Box<render::Args>),
+    Merge(merge::Args),
+    Diff(diff::Args),
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the JSON schema of scene files, for editors that complete and check them
+    Schema,
+}
+
+/// What a command ended with, unless it failed.
+enum Done {
+    /// All that was asked for.
+    All,
+    /// Ctrl-C; what there was is saved.
+    Interrupted,
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(Done::All) => ExitCode::SUCCESS,
+        Ok(Done::Interrupted) => ExitCode::from(130),
+        Err(report) => {
+            eprintln!("{report:?}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn run(command: Option<Command>) -> miette::Result<Done> {
+    match command {
+        None => return render::run(render::Args::default_scene()),
+        Some(Command::Render(args)) => return render::run(*args),
+        Some(Command::Merge(args)) => merge::run(args)?,
+        Some(Command::Diff(args)) => diff::run(args)?,
+        Some(Command::Completions { shell }) => {
+            clap_complete::generate(shell, &mut Cli::command(), "tyndall", &mut std::io::stdout());
+        }
+        Some(Command::Schema) => println!("{:#}", tyndall_scene::json_schema()),
+    }
+    Ok(Done::All)
+}

@@ -1,0 +1,295 @@
+//! `tyndall render`: a scene or a volume becomes a picture with its error.
+
+mod input;
+mod progress;
+mod stop;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use miette::{IntoDiagnostic, miette};
+use tyndall_film::{Accumulation, Film, ImageMetadata, Layers};
+use tyndall_scene::description::{Integrator, Layer, SceneDescription};
+use tyndall_scene::{Scene, build, scene_hash};
+use tyndall_transport::{Control, Outcome, RenderOptions, render_pass};
+
+use crate::Done;
+use crate::output::Output;
+use progress::{Progress, ProgressStyle};
+use stop::{Goal, Plan};
+
+/// Render a scene file or a volume file to a picture with its error
+///
+/// A volume file (.vdb .nvdb .vol .npy .nii .raw) needs no scene: camera, sun, sky and density are chosen from the
+/// data; --print-scene shows the choices as a scene file.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "\
+Examples:
+  tyndall render smoke.vdb                          smoke.exr and smoke.png, 64 samples a pixel
+  tyndall render smoke.vdb --set volume.0.mu_t=3    ... thicker
+  tyndall render smoke.vdb --print-scene > smoke.toml
+  tyndall render smoke.toml -o smoke.exr --error 1% --time 10min     until either is reached
+  tyndall render smoke.toml -o part.acc --samples 64..128            a share of the work, for `tyndall merge`
+  tyndall render smoke.toml -o smoke.exr --checkpoint smoke.acc --resume")]
+pub struct Args {
+    /// Scene file (.toml) or volume file; the built-in cumulus if left out
+    input: Option<PathBuf>,
+    /// Where to write the picture: .exr, .png, .acc or .json; may be given several times
+    #[arg(short, long, value_name = "FILE")]
+    output: Vec<Output>,
+    #[command(flatten)]
+    goal: Goal,
+    /// Render only the samples A to B−1 of each pixel
+    #[arg(long, value_name = "A..B", value_parser = parse_samples, conflicts_with_all = ["spp", "error", "time"])]
+    samples: Option<Range<u64>>,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Number of threads; as many as there are cores by default. The picture does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Width and height of the picture
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
+    resolution: Option<[u32; 2]>,
+    /// Brighten the .png by 2^STOPS
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    exposure: Option<f64>,
+    /// Change one value of the scene, such as camera.vertical_fov=30 or volume.0.mu_t=3
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Which integrator: one path at a time to read beside the equations, or many at once
+    #[arg(long, value_name = "reference|fast", value_parser = parse_integrator)]
+    integrator: Option<Integrator>,
+    /// Save the exact sums here every minute and at the end, for --resume
+    #[arg(long, value_name = "FILE.acc")]
+    checkpoint: Option<PathBuf>,
+    /// Go on from the checkpoint, if it exists
+    #[arg(long, requires = "checkpoint")]
+    resume: bool,
+    /// How to report progress
+    #[arg(long, value_enum, default_value_t)]
+    progress: ProgressStyle,
+    /// Print the scene as a scene file and stop
+    #[arg(long)]
+    print_scene: bool,
+}
+
+impl Args {
+    /// What `tyndall` alone does.
+    pub fn default_scene() -> Args {
+        Args {
+            input: None,
+            output: Vec::new(),
+            goal: Goal::default(),
+            samples: None,
+            seed: None,
+            threads: None,
+            resolution: None,
+            exposure: None,
+            set: Vec::new(),
+            integrator: None,
+            checkpoint: None,
+            resume: false,
+            progress: ProgressStyle::default(),
+            print_scene: false,
+        }
+    }
+}
+
+/// Loads, builds, renders, writes.
+pub fn run(args: Args) -> miette::Result<Done> {
+    let input = input::load(args.input.as_deref(), &overrides(&args))?;
+    let description = &input.description;
+    if args.print_scene {
+        print!("{}", input.text);
+        return Ok(Done::All);
+    }
+    let outputs = if args.output.is_empty() { input.default_outputs() } else { args.output.clone() };
+    check_folders(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
+
+    let built = build(description, &input.folder)?;
+    for note in input.notes.iter().chain(&built.notes) {
+        eprintln!("note: {note}");
+    }
+    let mut picture = open_picture(&args, description, &input.folder)?;
+    let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
+    let end = render(&args, &built.scene, description, &plan, &mut picture)?;
+
+    if picture.film.mean_sample_count() == 0.0 {
+        eprintln!("interrupted before anything was rendered; nothing is written");
+        return Ok(end);
+    }
+    let exposure = args.exposure.unwrap_or(description.film.exposure) as f32;
+    for output in &outputs {
+        output.write(&picture, exposure)?;
+    }
+    report(&picture, &outputs, &end);
+    Ok(end)
+}
+
+/// The options that stand for keys of the scene, as `--set` would give them.
+fn overrides(args: &Args) -> Vec<String> {
+    let mut overrides = args.set.clone();
+    overrides.extend(args.resolution.map(|[width, height]| format!("film.resolution=[{width}, {height}]")));
+    overrides.extend(args.seed.map(|seed| format!("render.seed={seed}")));
+    overrides.extend(args.integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
+    overrides
+}
+
+fn name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Fast => "fast",
+        Integrator::Reference => "reference",
+    }
+}
+
+/// It is better to hear now than after an hour that a folder does not exist.
+fn check_folders<'a>(paths: impl Iterator<Item = &'a Path>) -> miette::Result<()> {
+    for path in paths {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if folder.is_some_and(|folder| !folder.is_dir()) {
+            return Err(miette!("{}: its folder does not exist; create it first", path.display()));
+        }
+        if path.is_dir() {
+            return Err(miette!("{}: is a folder; give the name of a file", path.display()));
+        }
+    }
+    Ok(())
+}
+
+/// An empty film, or the one of the checkpoint.
+fn open_picture(args: &Args, description: &SceneDescription, folder: &Path) -> miette::Result<Accumulation> {
+    let [width, height] = description.film.resolution;
+    let layers = layers(description);
+    let metadata = ImageMetadata {
+        scene_hash: scene_hash(description, folder)?.to_string(),
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        options: format!("integrator={}", name(description.render.integrator)),
+        seed: u64::from(description.render.seed),
+        seconds: 0.0,
+    };
+    let film = Film::new(width, height, layers).into_diagnostic()?;
+    let empty = Accumulation { film, metadata };
+    let Some(checkpoint) = args.checkpoint.as_deref().filter(|path| path.exists()) else { return Ok(empty) };
+    if !args.resume {
+        return Err(miette!(
+            "{}: exists already; add --resume to go on from it, or name another file",
+            checkpoint.display()
+        ));
+    }
+    let saved = Accumulation::read(checkpoint).into_diagnostic()?;
+    let same = |a: &ImageMetadata, b: &ImageMetadata| {
+        (&a.scene_hash, &a.version, &a.options, a.seed) == (&b.scene_hash, &b.version, &b.options, b.seed)
+    };
+    let same_size = (saved.film.width(), saved.film.height()) == (width, height);
+    if !same(&saved.metadata, &empty.metadata) || !same_size || saved.film.layers() != layers {
+        return Err(miette!(
+            "{}: is of another scene, size, seed, integrator or version; name another --checkpoint",
+            checkpoint.display()
+        ));
+    }
+    Ok(saved)
+}
+
+fn layers(description: &SceneDescription) -> Layers {
+    let wanted = |layer| description.film.layers.as_ref().is_none_or(|layers| layers.contains(&layer));
+    Layers {
+        depth: wanted(Layer::Depth),
+        albedo: wanted(Layer::Albedo),
+        emission: wanted(Layer::Emission),
+        single: wanted(Layer::Single),
+        multiple: wanted(Layer::Multiple),
+    }
+}
+
+/// Renders pass after pass until the plan is fulfilled or Ctrl-C is pressed.
+fn render(
+    args: &Args,
+    scene: &Scene,
+    description: &SceneDescription,
+    plan: &Plan,
+    picture: &mut Accumulation,
+) -> miette::Result<Done> {
+    let control = Arc::new(Control::default());
+    stop_on_interrupt(&control)?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let options = RenderOptions {
+        integrator: description.render.integrator,
+        seed: picture.metadata.seed,
+        threads: args.threads.map_or(cores, usize::from),
+    };
+    let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
+    let mut clock = stop::Clock::start(picture.metadata.seconds);
+    let progress = Progress::start(args.progress, pixels, plan.spp(), Arc::clone(&control));
+    while let Some(pass) = plan.next_pass(&picture.film, &clock) {
+        picture.film.open_range(pass.start).into_diagnostic()?;
+        let outcome = render_pass(scene, &mut picture.film, pass.end, &options, &control);
+        picture.metadata.seconds = clock.seconds();
+        if outcome == Outcome::Cancelled {
+            break;
+        }
+        picture.film.complete_through(pass.end).into_diagnostic()?;
+        progress.pass_done(&picture.film);
+        if let Some(checkpoint) = args.checkpoint.as_deref().filter(|_| clock.checkpoint_is_due()) {
+            picture.write(checkpoint).into_diagnostic()?;
+        }
+    }
+    progress.finish();
+    if let Some(checkpoint) = &args.checkpoint {
+        picture.write(checkpoint).into_diagnostic()?;
+    }
+    let interrupted = control.cancel.load(Ordering::Relaxed);
+    Ok(if interrupted { Done::Interrupted } else { Done::All })
+}
+
+/// The first Ctrl-C ends the render, which saves what there is; the second ends the program.
+fn stop_on_interrupt(control: &Arc<Control>) -> miette::Result<()> {
+    let control = Arc::clone(control);
+    ctrlc::set_handler(move || {
+        if control.cancel.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })
+    .into_diagnostic()
+}
+
+fn report(picture: &Accumulation, outputs: &[Output], end: &Done) {
+    let film = &picture.film;
+    let error = film.median_relative_error().filter(|error| error.is_finite());
+    let error = error.map_or("error not known yet".into(), |e| format!("median error {:.2} %", 100.0 * e));
+    let interrupted = if matches!(end, Done::Interrupted) { "interrupted: " } else { "" };
+    eprintln!(
+        "{interrupted}{}x{}, {:.4} samples a pixel, {error}, {:.1} s",
+        film.width(),
+        film.height(),
+        film.mean_sample_count(),
+        picture.metadata.seconds
+    );
+    if film.rejected() > 0 {
+        eprintln!("note: {} samples were not finite or too large and count as black", film.rejected());
+    }
+    for output in outputs {
+        eprintln!("wrote {}", output.path().display());
+    }
+}
+
+fn parse_samples(text: &str) -> Result<Range<u64>, String> {
+    let range = text.split_once("..").and_then(|(start, end)| Some(start.parse().ok()?..end.parse().ok()?));
+    range.filter(|range: &Range<u64>| range.start < range.end).ok_or("write A..B with A < B, such as 0..64".into())
+}
+
+fn parse_resolution(text: &str) -> Result<[u32; 2], String> {
+    let size = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    size.filter(|size| size.iter().all(|edge| (1..=65536).contains(edge)))
+        .ok_or("write WIDTHxHEIGHT, such as 1280x720".into())
+}
+
+fn parse_integrator(text: &str) -> Result<Integrator, String> {
+    match text {
+        "fast" => Ok(Integrator::Fast),
+        "reference" => Ok(Integrator::Reference),
+        _ => Err("there are `fast` and `reference`".into()),
+    }
+}

@@ -1,0 +1,149 @@
+//! Progress: a bar on a terminal, or a JSON object a line.
+
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle as BarStyle};
+use serde::Serialize;
+use tyndall_film::Film;
+use tyndall_transport::Control;
+
+/// How progress is reported.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum ProgressStyle {
+    /// A bar, if the output is a terminal
+    #[default]
+    Bar,
+    /// One JSON object a line on standard output: samples, seconds, rate, error, time left
+    Json,
+    /// Nothing
+    None,
+}
+
+/// A line of `--progress json`.
+#[derive(Serialize)]
+struct Line {
+    /// Samples a pixel so far.
+    samples: f64,
+    seconds: f64,
+    /// Paths a second.
+    rate: f64,
+    /// Median relative standard error after the last whole pass.
+    error: Option<f64>,
+    /// Seconds left, where the number of samples is known.
+    time_left: Option<f64>,
+}
+
+/// Reports from a thread of its own until [`Progress::finish`].
+pub struct Progress {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+struct Shared {
+    style: ProgressStyle,
+    pixels: f64,
+    spp: Option<f64>,
+    control: Arc<Control>,
+    start: Instant,
+    error: Mutex<Option<f64>>,
+    finished: AtomicBool,
+}
+
+impl Progress {
+    /// `spp` is the number of samples of each pixel, if it is known beforehand.
+    pub fn start(style: ProgressStyle, pixels: u64, spp: Option<u64>, control: Arc<Control>) -> Progress {
+        let style = match style {
+            ProgressStyle::Bar if !std::io::stderr().is_terminal() => ProgressStyle::None,
+            style => style,
+        };
+        let shared = Arc::new(Shared {
+            style,
+            pixels: pixels as f64,
+            spp: spp.map(|spp| spp as f64),
+            control,
+            start: Instant::now(),
+            error: Mutex::new(None),
+            finished: AtomicBool::new(false),
+        });
+        let thread = (style != ProgressStyle::None).then(|| {
+            let shared = Arc::clone(&shared);
+            std::thread::spawn(move || shared.report())
+        });
+        Progress { shared, thread }
+    }
+
+    /// Takes the error of the film after a pass.
+    pub fn pass_done(&self, film: &Film) {
+        if self.shared.style == ProgressStyle::Json {
+            let error = film.median_relative_error().filter(|error| error.is_finite());
+            *self.shared.error.lock().unwrap_or_else(PoisonError::into_inner) = error;
+        }
+    }
+
+    /// Ends the reports.
+    pub fn finish(mut self) {
+        self.shared.finished.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.thread().unpark();
+            // A reporter that died has nothing more to say.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    fn report(&self) {
+        let bar = (self.style == ProgressStyle::Bar).then(|| self.new_bar());
+        let interval = Duration::from_millis(if bar.is_some() { 100 } else { 500 });
+        while !self.finished.load(Ordering::Relaxed) {
+            self.tell(bar.as_ref());
+            std::thread::park_timeout(interval);
+        }
+        self.tell(bar.as_ref());
+        if let Some(bar) = bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn new_bar(&self) -> ProgressBar {
+        let (bar, template) = match self.spp {
+            Some(spp) => (ProgressBar::new((spp * self.pixels) as u64), "{bar:40} {percent:>3} %  {msg}"),
+            None => (ProgressBar::new_spinner(), "{spinner} {msg}"),
+        };
+        bar.with_style(BarStyle::with_template(template).unwrap_or_else(|_| BarStyle::default_bar()))
+    }
+
+    fn tell(&self, bar: Option<&ProgressBar>) {
+        let paths = self.control.samples.load(Ordering::Relaxed) as f64;
+        let seconds = self.start.elapsed().as_secs_f64();
+        let rate = if seconds > 0.0 { paths / seconds } else { 0.0 };
+        let left = self.spp.map(|spp| (spp * self.pixels - paths).max(0.0) / rate).filter(|t| t.is_finite());
+        match bar {
+            Some(bar) => {
+                bar.set_position(paths as u64);
+                let left = left.map_or(String::new(), |t| format!(", {} left", minutes(t)));
+                let samples = paths / self.pixels;
+                bar.set_message(format!(
+                    "{samples:.1} samples a pixel, {:.2} million paths/s, {}{left}",
+                    rate * 1e-6,
+                    minutes(seconds)
+                ));
+            }
+            None => {
+                let error = *self.error.lock().unwrap_or_else(PoisonError::into_inner);
+                let line = Line { samples: paths / self.pixels, seconds, rate, error, time_left: left };
+                if let Ok(line) = serde_json::to_string(&line) {
+                    println!("{line}");
+                }
+            }
+        }
+    }
+}
+
+fn minutes(seconds: f64) -> String {
+    format!("{}:{:02}", (seconds / 60.0) as u64, (seconds % 60.0) as u64)
+}
