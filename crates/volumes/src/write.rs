@@ -87,7 +87,8 @@ fn write_to(out: &mut dyn Write, format: Format, grids: &[Grid], codec: Codec) -
         Format::NiftiGzip => {
             let mut packed = GzEncoder::new(out, Compression::default());
             nifti::write(&mut packed, only(grids)?)?;
-            packed.finish().map(drop).map_err(Fault::Io)
+            packed.finish().map_err(Fault::Io)?;
+            Ok(())
         }
         Format::Raw => raw::write(out, only(grids)?),
     }

@@ -60,14 +60,14 @@ fn parse(bytes: &[u8]) -> Result<Vec<Grid>, String> {
         .map_err(|error| error.to_string())
 }
 
-/// Leaves and tiles in the order of their origins.
-fn sorted(tree: &Tree<f32>) -> (Vec<(Leaf, Vec<f32>)>, Vec<Tile<f32>>) {
-    let mut leaves: Vec<_> =
-        tree.leaves.iter().copied().zip(tree.leaf_values.chunks(512).map(<[f32]>::to_vec)).collect();
-    leaves.sort_by_key(|(leaf, _)| leaf.origin);
+/// Leaves, their values, and tiles, in the order of their origins.
+fn sorted(tree: &Tree<f32>) -> (Vec<Leaf>, Vec<f32>, Vec<Tile<f32>>) {
+    let mut order: Vec<_> = (0..tree.leaves.len()).collect();
+    order.sort_by_key(|&leaf| tree.leaves[leaf].origin);
     let mut tiles = tree.tiles.clone();
     tiles.sort_by_key(|tile| tile.origin);
-    (leaves, tiles)
+    let values = order.iter().flat_map(|leaf| &tree.leaf_values[leaf * 512..][..512]);
+    (order.iter().map(|&leaf| tree.leaves[leaf]).collect(), values.copied().collect(), tiles)
 }
 
 #[test]
