@@ -13,7 +13,7 @@ mod selection;
 mod statistics;
 pub mod vdb;
 
-pub use error::ReadError;
+pub use error::{ReadError, WriteError};
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
 pub use probe::Lookup;
 pub use selection::GridSelection;
