@@ -6,7 +6,7 @@ use glam::DAffine3;
 use tyndall_volumes::{Codec, Grid, GridClass, GridSelection, GridValues, Leaf, ReadRequest, Tile, Tree};
 use tyndall_volumes::{read, read_bytes, write};
 
-use crate::facts::float;
+use crate::facts::{float, options};
 
 /// A tree with a leaf, tiles of every size, active and not, on both sides of the origin.
 pub fn mixed_tree() -> Tree<f32> {
@@ -45,7 +45,7 @@ pub fn grid_of(name: &str, tree: Tree<f32>) -> Grid {
 /// The bytes of a NanoVDB file of `grids`.
 pub fn file_of(grids: &[Grid], codec: Codec) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = write(&folder.path().join("a.nvdb"), grids, codec).expect("written");
+    let path = write(&folder.path().join("a.nvdb"), grids, &options(codec)).expect("written");
     assert_eq!(
         std::fs::read_dir(folder.path()).expect("a folder").count(),
         1,
@@ -154,8 +154,9 @@ fn a_failed_write_leaves_what_was_there() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.npy");
     std::fs::write(&path, "before").expect("writable");
-    let error =
-        write(&path, &[grid_of("density", mixed_tree())], Codec::None).expect_err("too large").to_string();
+    let error = write(&path, &[grid_of("density", mixed_tree())], &options(Codec::None))
+        .expect_err("too large")
+        .to_string();
     assert!(error.contains("is larger than 4 GiB as an array; write .vdb or .nvdb"), "{error}");
     assert_eq!(std::fs::read(&path).expect("readable"), b"before");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
