@@ -12,7 +12,7 @@ use flate2::read::MultiGzDecoder;
 
 use crate::fault::Fault;
 use crate::raw::RawShape;
-use crate::{Grid, GridSelection, ReadError, nifti, npy, nvdb, raw, vol};
+use crate::{Grid, GridSelection, ReadError, nifti, npy, nvdb, raw, vdb, vol};
 
 /// A format of volume files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,7 +121,7 @@ pub fn read(path: &Path, request: &ReadRequest) -> Result<VolumeFile, ReadError>
     if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
         return Err(Fault::unsupported("is a folder; give a volume file in it").at(path));
     }
-    read_source(BufReader::new(file), path, request)
+    read_source(BufReader::new(file), path, request, || vdb::read(path, &request.grids))
 }
 
 /// Reads a volume file whose content is `bytes`; `path` stands in messages and gives the extension.
@@ -129,41 +129,55 @@ pub fn read(path: &Path, request: &ReadRequest) -> Result<VolumeFile, ReadError>
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(bytes: &[u8], path: &Path, request: &ReadRequest) -> Result<VolumeFile, ReadError> {
-    read_source(Cursor::new(bytes), path, request)
+    read_source(Cursor::new(bytes), path, request, || vdb::read_bytes(bytes, path, &request.grids))
 }
 
+/// Reads `source` by its format; `read_open_vdb` reads the same file if it is one of OpenVDB.
 fn read_source(
     mut source: impl Read + Seek,
     path: &Path,
     request: &ReadRequest,
+    read_open_vdb: impl FnOnce() -> Result<vdb::VdbFile, ReadError>,
 ) -> Result<VolumeFile, ReadError> {
-    let (format, found) = read_found(&mut source, path, request).map_err(|fault| fault.at(path))?;
+    let format = format_of(&mut source, path, request).map_err(|fault| fault.at(path))?;
+    if format == Format::OpenVdb {
+        let vdb::VdbFile { grids, skipped } = read_open_vdb()?;
+        let skipped = skipped.into_iter().map(|skipped| (skipped.name, skipped.why)).collect();
+        return Ok(VolumeFile { format, grids, skipped });
+    }
+    let mut found = Found::default();
+    read_found(&mut source, format, path, request, &mut found).map_err(|fault| fault.at(path))?;
     found.into_file(format, path, &request.grids)
 }
 
-fn read_found(
-    source: &mut (impl Read + Seek),
-    path: &Path,
-    request: &ReadRequest,
-) -> Result<(Format, Found), Fault> {
-    let available = source.seek(SeekFrom::End(0))?;
-    source.rewind()?;
+fn format_of(source: &mut (impl Read + Seek), path: &Path, request: &ReadRequest) -> Result<Format, Fault> {
     let mut start = Vec::new();
     source.by_ref().take(START).read_to_end(&mut start)?;
-    source.rewind()?;
     let promised = Format::from_extension(path);
-    let format = match Format::from_content(&start) {
-        Some(format) => format,
-        None if promised == Some(Format::Raw) || request.raw.is_some() => Format::Raw,
-        None => return Err(unknown(&start, promised)),
-    };
+    match Format::from_content(&start) {
+        Some(format) => Ok(format),
+        None if promised == Some(Format::Raw) || request.raw.is_some() => Ok(Format::Raw),
+        None => Err(unknown(&start, promised)),
+    }
+}
+
+/// Reads a file of any format but that of OpenVDB, whose reader has its own way of finding grids.
+fn read_found(
+    source: &mut (impl Read + Seek),
+    format: Format,
+    path: &Path,
+    request: &ReadRequest,
+    found: &mut Found,
+) -> Result<(), Fault> {
+    let available = source.seek(SeekFrom::End(0))?;
+    source.rewind()?;
     let grid = match format {
-        Format::OpenVdb => return Err(Fault::unsupported("OpenVDB files are not read yet")),
-        Format::NanoVdb => return Ok((format, nvdb::read(source, &request.grids)?)),
-        Format::Mitsuba => vol::read(source, available),
-        Format::NumPy => npy::read(source, available),
-        Format::Nifti => nifti::read(source, Some(available)),
-        Format::NiftiGzip => read_gzip(source),
+        Format::OpenVdb => return Ok(()),
+        Format::NanoVdb => return nvdb::read(source, &request.grids, found),
+        Format::Mitsuba => vol::read(source, available)?,
+        Format::NumPy => npy::read(source, available)?,
+        Format::Nifti => nifti::read(source, Some(available))?,
+        Format::NiftiGzip => read_gzip(source)?,
         Format::Raw => {
             let shape = request.raw.or_else(|| RawShape::from_file_name(path)).ok_or_else(|| {
                 Fault::unsupported(
@@ -171,16 +185,17 @@ fn read_found(
                      or name the file like volume_256x256x256_uint8.raw",
                 )
             })?;
-            raw::read(source, available, &shape)
+            raw::read(source, available, &shape)?
         }
-    }?;
-    let mut found = Found::default();
+    };
     let name = grid.name.clone();
-    match wanted(&request.grids, &name) {
-        true => found.take(&name, Ok(grid))?,
-        false => found.pass(&name),
+    match found.wants(&request.grids, &name) {
+        true => found.take(&name, Ok(grid)),
+        false => {
+            found.pass(&name);
+            Ok(())
+        }
     }
-    Ok((format, found))
 }
 
 /// Only the bytes that the image's own header promises are ever decompressed.
@@ -210,23 +225,33 @@ fn unknown(start: &[u8], promised: Option<Format>) -> Fault {
     Fault::Damaged(what)
 }
 
-/// Whether a grid of this name is asked for.
-pub(crate) fn wanted(selection: &GridSelection, name: &str) -> bool {
-    match selection {
-        GridSelection::All => true,
-        GridSelection::Names(names) => names.iter().any(|wanted| wanted == name),
-    }
-}
-
 /// What a reader has come upon so far.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     grids: Vec<Grid>,
     skipped: Vec<(String, String)>,
-    names: Vec<String>,
+    /// Every name, plain and numbered.
+    names: Vec<(String, String)>,
 }
 
 impl Found {
+    /// Whether the next grid, of this name, is asked for: by its name alone, or as `name[n]` after `n` others.
+    pub(crate) fn wants(&self, selection: &GridSelection, name: &str) -> bool {
+        match selection {
+            GridSelection::All => true,
+            GridSelection::Names(names) => {
+                let numbered = self.numbered(name);
+                names.iter().any(|wanted| wanted == name || *wanted == numbered)
+            }
+        }
+    }
+
+    /// The name that the next grid of this name has among its likes.
+    fn numbered(&self, name: &str) -> String {
+        let before = self.names.iter().filter(|(other, _)| other == name).count();
+        format!("{name}[{before}]")
+    }
+
     /// Keeps a grid that was asked for, or the reason why it is not read; damage ends the reading.
     pub(crate) fn take(&mut self, name: &str, grid: Result<Grid, Fault>) -> Result<(), Fault> {
         self.pass(name);
@@ -240,7 +265,7 @@ impl Found {
 
     /// Notes a grid that was not asked for.
     pub(crate) fn pass(&mut self, name: &str) {
-        self.names.push(name.to_owned());
+        self.names.push((name.to_owned(), self.numbered(name)));
     }
 
     /// The answer, once it is known that it holds what was asked for.
@@ -255,10 +280,13 @@ impl Found {
             Fault::Unsupported(format!("grid `{name}`: {reason}")).at(path)
         };
         if let GridSelection::Names(wanted) = selection {
-            if let Some(name) = wanted.iter().find(|wanted| !names.contains(wanted)) {
+            if let Some(name) = wanted
+                .iter()
+                .find(|&wanted| !names.iter().any(|(plain, numbered)| [plain, numbered].contains(&wanted)))
+            {
                 let available = match names.is_empty() {
                     true => vec!["none".to_owned()],
-                    false => names.iter().map(|name| format!("`{name}`")).collect(),
+                    false => names.iter().map(|(name, _)| format!("`{name}`")).collect(),
                 };
                 return Err(ReadError::NoSuchGrid {
                     path: path.to_path_buf(),

@@ -32,7 +32,7 @@ use flate2::read::ZlibDecoder;
 use crate::GridSelection;
 use crate::fault::Fault;
 use crate::little_endian::{u16_at, u32_at, u64_at};
-use crate::open::{Found, wanted};
+use crate::open::Found;
 
 use grid::{own_name, read_grid, text_until_nul};
 use layout::{GRID_HEAD, TREE_HEAD};
@@ -78,17 +78,20 @@ impl fmt::Display for Version {
 }
 
 /// Reads the grids of `selection`; what is not asked for is skipped, unread.
-pub(crate) fn read(source: &mut (impl Read + Seek), selection: &GridSelection) -> Result<Found, Fault> {
+pub(crate) fn read(
+    source: &mut (impl Read + Seek),
+    selection: &GridSelection,
+    found: &mut Found,
+) -> Result<(), Fault> {
     let length = source.seek(SeekFrom::End(0))?;
-    let mut found = Found::default();
     let mut at = 0;
     while at < length {
         let head = read_at(source, at, (length - at).min(GRID_HEAD as u64))?;
         let magic = u64_at(&head, 0);
         let bare = magic == MAGIC_1 || magic == MAGIC_0 && u64_at(&head, GRID_HEAD - 8) == MAGIC_1;
         at = match magic {
-            _ if bare => read_bare_grid(source, at, length, &head, selection, &mut found)?,
-            MAGIC_0 | MAGIC_2 => read_segment(source, at, length, &head, selection, &mut found)?,
+            _ if bare => read_bare_grid(source, at, length, &head, selection, found)?,
+            MAGIC_0 | MAGIC_2 => read_segment(source, at, length, &head, selection, found)?,
             _ if [MAGIC_0, MAGIC_1, MAGIC_2].contains(&magic.swap_bytes()) => {
                 return Err(Fault::unsupported(
                     "a big-endian NanoVDB file; write it again on a little-endian machine",
@@ -97,7 +100,7 @@ pub(crate) fn read(source: &mut (impl Read + Seek), selection: &GridSelection) -
             _ => return Err(Fault::Damaged(format!("corrupt: no NanoVDB segment begins at byte {at}"))),
         };
     }
-    Ok(found)
+    Ok(())
 }
 
 /// Reads the segment at `at`; returns where the next begins.
@@ -132,7 +135,7 @@ fn read_segment(
         if on_disk > length - at {
             return Err(Fault::Damaged(format!("truncated: grid `{name}` lies outside the file")));
         }
-        if wanted(selection, &name) {
+        if found.wants(selection, &name) {
             source.seek(SeekFrom::Start(at))?;
             let grid = read_buffer(source, codec, size, on_disk)
                 .and_then(|buffer| read_grid(&buffer, Some(&name), codec.name()));
@@ -161,7 +164,7 @@ fn read_bare_grid(
     // The name can stand at the very end of the buffer, so the choice comes after the reading.
     let buffer = read_at(source, at, size)?;
     let name = own_name(&buffer, head)?;
-    match wanted(selection, &name) {
+    match found.wants(selection, &name) {
         true => found.take(&name, read_grid(&buffer, Some(&name), Codec::None.name()))?,
         false => found.pass(&name),
     }

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use tyndall_volumes::{
-    Format, Grid, GridClass, GridSelection, GridValues, ReadError, ReadRequest, Tree, read,
+    Format, Grid, GridClass, GridSelection, GridStatistics, GridValues, ReadError, ReadRequest, read,
 };
 
-use crate::facts::{Facts, facts, probe, scalar_facts, shared};
+use crate::facts::{float, shared};
 
 /// Sum over the active voxels of `dragon.vdb`, from which the variants were made, and their number.
 const DRAGON: (f64, u64) = (10186.861159738584, 19_660);
@@ -18,17 +18,10 @@ fn read_all(path: &Path) -> Vec<Grid> {
     file.grids
 }
 
-fn float(grid: &Grid) -> &Tree<f32> {
-    match &grid.values {
-        GridValues::Float(tree) => tree,
-        other => panic!("not a float grid: {other:?}"),
-    }
-}
-
 #[track_caller]
-fn assert_sum(found: Facts, sum: f64, active: u64, tolerance: f64) {
-    assert_eq!(found.active, active);
-    assert!((found.sum - sum).abs() <= tolerance, "sum {} instead of {sum}", found.sum);
+fn assert_sum(found: &GridStatistics, sum: f64, active: u64, tolerance: f64) {
+    assert_eq!(found.active_voxels, active);
+    assert!((found.sum[0] - sum).abs() <= tolerance, "sum {} instead of {sum}", found.sum[0]);
 }
 
 #[test]
@@ -36,10 +29,10 @@ fn float_grids_are_exact_in_every_codec() {
     for codec in ["none", "zip", "blosc"] {
         let Some(path) = shared(&format!("volumes/variants/float_{codec}.nvdb")) else { return };
         let [grid] = read_all(&path).try_into().expect("one grid");
-        let found = scalar_facts(&grid.values);
-        assert_sum(found, DRAGON.0, DRAGON.1, 1e-9);
-        assert_eq!((found.min, found.max), (2.8933087378391065e-05, 1.0));
-        assert_eq!(found.bounds, [[16, 1, 35], [85, 49, 65]]);
+        let found = grid.values.statistics();
+        assert_sum(&found, DRAGON.0, DRAGON.1, 1e-9);
+        assert_eq!((found.min[0], found.max[0]), (2.8933087378391065e-05, 1.0));
+        assert_eq!(found.active_bbox, Some([[16, 1, 35], [85, 49, 65]]));
         assert_eq!(
             (grid.name.as_str(), grid.class, grid.codec.as_str()),
             ("density", GridClass::FogVolume, codec)
@@ -49,9 +42,9 @@ fn float_grids_are_exact_in_every_codec() {
             glam::DVec3::splat(0.10000000149011612)
         );
         assert_eq!(float(&grid).background, 0.0);
-        assert_eq!(probe(float(&grid), [55, 31, 43]), (0.767_42, true));
-        assert_eq!(probe(float(&grid), [44, 7, 45]), (1.0, true));
-        assert_eq!(probe(float(&grid), [40, 28, 64]), (0.0, false));
+        assert_eq!(float(&grid).probe([55, 31, 43]), (0.767_42, true));
+        assert_eq!(float(&grid).probe([44, 7, 45]), (1.0, true));
+        assert_eq!(float(&grid).probe([40, 28, 64]), (0.0, false));
     }
 }
 
@@ -83,7 +76,7 @@ fn several_grids_are_read_in_file_order_or_by_name() {
     let names: Vec<_> = grids.iter().map(|grid| grid.name.as_str()).collect();
     assert_eq!(names, ["density", "temperature"]);
     for grid in &grids {
-        assert_sum(scalar_facts(&grid.values), DRAGON.0, DRAGON.1, 1e-9);
+        assert_sum(&grid.values.statistics(), DRAGON.0, DRAGON.1, 1e-9);
     }
 
     let named = |name: &str| ReadRequest { grids: GridSelection::Names(vec![name.to_owned()]), raw: None };
@@ -103,11 +96,12 @@ fn vectors_are_read() {
     let Some(path) = shared("volumes/variants/vec3f.nvdb") else { return };
     let [grid] = read_all(&path).try_into().expect("one grid");
     let GridValues::Vec3(tree) = &grid.values else { panic!("not vectors") };
-    let [x, y, z] = [0, 1, 2].map(|axis| facts(tree, |value| value[axis].into()));
-    for (found, sum) in [(x, 18.638968428596854), (y, -196.09178103040904), (z, 35.3759128972888)] {
-        assert_sum(found, sum, DRAGON.1, 1e-9);
+    let found = tree.statistics();
+    assert_eq!(found.active_voxels, DRAGON.1);
+    for (axis, sum) in [18.638968428596854, -196.09178103040904, 35.3759128972888].into_iter().enumerate() {
+        assert!((found.sum[axis] - sum).abs() < 1e-9, "component {axis}: {}", found.sum[axis]);
     }
-    assert_eq!(probe(tree, [60, 17, 44]), ([1.622_465_1, -1.147_475_1, 0.648_042_44], true));
+    assert_eq!(tree.probe([60, 17, 44]), ([1.622_465_1, -1.147_475_1, 0.648_042_44], true));
 }
 
 #[test]
@@ -115,8 +109,8 @@ fn real_files_of_old_versions_give_the_values_of_their_sources() {
     // The sums are those OpenVDB reads from the .vdb of the same field; 593,674 voxels are in the file's own record.
     let Some(smoke) = shared("volumes/smoke-blosc.nvdb") else { return };
     let [grid] = read_all(&smoke).try_into().expect("one grid");
-    assert_sum(scalar_facts(&grid.values), 171499.69552135468, 1_049_275, 1e-6);
-    assert_eq!(probe(float(&grid), [72, 8, 53]), (1.2607422, true));
+    assert_sum(&grid.values.statistics(), 171499.69552135468, 1_049_275, 1e-6);
+    assert_eq!(float(&grid).probe([72, 8, 53]), (1.2607422, true));
 
     // Sums and counts of the fields these were made from, and of the files' own records.
     for (name, active, sum) in [
@@ -128,7 +122,7 @@ fn real_files_of_old_versions_give_the_values_of_their_sources() {
     ] {
         let Some(path) = shared(name) else { continue };
         let [grid] = read_all(&path).try_into().expect("one grid");
-        assert_sum(scalar_facts(&grid.values), sum, active, 1e-6);
+        assert_sum(&grid.values.statistics(), sum, active, 1e-6);
     }
 }
 
