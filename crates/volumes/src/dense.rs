@@ -1,0 +1,172 @@
+//! From a dense array in a stream to a sparse [`Tree`].
+//!
+//! The array is read in slabs of eight planes across its slowest axis, each cut into 8³ leaves; a full leaf of one
+//! value becomes a tile. Peak memory is the tree plus one slab. Every voxel of the array is active; outside the
+//! array the value is 0 and inactive. Voxel (0, 0, 0) is the first of the array.
+
+use std::io::Read;
+
+use crate::element::{AxisOrder, ByteOrder, Element};
+use crate::fault::Fault;
+use crate::{GridValues, LEAF_VOXELS, Leaf, Tile, Tree};
+
+/// Planes in a slab, and the edge of a leaf.
+const EDGE: usize = 8;
+/// A leaf costs 512 values however few of its voxels exist: an array that would grow by more than this factor …
+const MOST_GROWTH: u64 = 16;
+/// … to more than this many bytes is no volume.
+const GROWTH_ALLOWED: u64 = 64 << 20;
+
+/// How a dense array is stored.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Dense {
+    /// Voxels along x, y, z.
+    pub shape: [usize; 3],
+    /// Numbers a voxel, next to each other: 1, or 3 for vectors.
+    pub channels: usize,
+    /// Type of the numbers.
+    pub element: Element,
+    /// Order of their bytes.
+    pub byte_order: ByteOrder,
+    /// Order of the voxels.
+    pub axis_order: AxisOrder,
+    /// `(slope, intercept)`: the value is `slope · number + intercept`.
+    pub scale: Option<(f64, f64)>,
+}
+
+impl Dense {
+    /// Bytes of the array, once its shape is sound.
+    pub(crate) fn bytes(&self) -> Result<u64, Fault> {
+        let [x, y, z] = self.shape;
+        if self.shape.contains(&0) {
+            return Err(Fault::Damaged(format!("the array of {x} x {y} x {z} voxels has none at all")));
+        }
+        let longest = i32::MAX as usize - EDGE;
+        let voxel = (self.channels * self.element.size()) as u64;
+        self.shape
+            .iter()
+            .try_fold(voxel, |bytes, &edge| bytes.checked_mul(edge as u64).filter(|_| edge <= longest))
+            .ok_or_else(|| {
+                Fault::Damaged(format!("an array of {x} x {y} x {z} voxels is too large for any memory"))
+            })
+    }
+
+    /// Reads the array from `source`, which holds `available` bytes if that is known.
+    ///
+    /// Numbers that 32-bit floats hold exactly become `Float`, others `Double`; vectors become `Vec3`, rounded.
+    pub(crate) fn read(&self, source: &mut impl Read, available: Option<u64>) -> Result<GridValues, Fault> {
+        let bytes = self.bytes()?;
+        let [x, y, z] = self.shape;
+        if let Some(available) = available.filter(|&available| available < bytes) {
+            return Err(Fault::Damaged(format!(
+                "truncated: {x} x {y} x {z} voxels take {bytes} bytes, the file has {available} for them"
+            )));
+        }
+        let leaves: u64 = self.shape.iter().map(|edge| edge.div_ceil(EDGE) as u64).product();
+        let grown = leaves.saturating_mul(LEAF_VOXELS as u64 * 4);
+        if grown > GROWTH_ALLOWED && grown / MOST_GROWTH > bytes {
+            return Err(Fault::Unsupported(format!(
+                "an array of {x} x {y} x {z} voxels is too thin to be a volume; give it at least 8 voxels an axis"
+            )));
+        }
+        let (slope, intercept) = self.scale.unwrap_or((1.0, 0.0));
+        let (element, size) = (self.element, self.element.size());
+        Ok(match (self.channels, self.scale) {
+            (3, _) => GridValues::Vec3(self.build(source, |bytes| {
+                [0, 1, 2].map(|channel| (slope * element.decode(&bytes[channel * size..]) + intercept) as f32)
+            })?),
+            (_, None) if element.fits_f32() => {
+                GridValues::Float(self.build(source, |bytes| element.decode(bytes) as f32)?)
+            }
+            (_, Some(_)) if element.fits_f32() => GridValues::Float(
+                self.build(source, |bytes| (slope * element.decode(bytes) + intercept) as f32)?,
+            ),
+            (_, None) => GridValues::Double(self.build(source, |bytes| element.decode(bytes))?),
+            (_, Some(_)) => {
+                GridValues::Double(self.build(source, |bytes| slope * element.decode(bytes) + intercept)?)
+            }
+        })
+    }
+
+    /// Reads slab after slab; `decode` takes the little-endian bytes of a voxel.
+    fn build<T>(&self, source: &mut impl Read, decode: impl Fn(&[u8]) -> T) -> Result<Tree<T>, Fault>
+    where
+        T: Copy + Default + PartialEq,
+    {
+        let voxel = self.channels * self.element.size();
+        let [nx, ny, nz] = self.shape;
+        // Bytes from a voxel to its neighbour along x, y, z, within a slab.
+        let (slow, strides) = match self.axis_order {
+            AxisOrder::XFastest => (2, [voxel, nx * voxel, nx * ny * voxel]),
+            AxisOrder::ZFastest => (0, [nz * ny * voxel, nz * voxel, voxel]),
+        };
+        let mut tree =
+            Tree { background: T::default(), tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
+        let mut slab = Vec::new();
+        for first in (0..self.shape[slow]).step_by(EDGE) {
+            let planes = EDGE.min(self.shape[slow] - first);
+            self.read_slab(source, planes * strides[slow], &mut slab)?;
+            let mut corner = [0; 3];
+            corner[slow] = first;
+            let (a, b) = if slow == 0 { (1, 2) } else { (0, 1) };
+            for along_a in (0..self.shape[a]).step_by(EDGE) {
+                for along_b in (0..self.shape[b]).step_by(EDGE) {
+                    (corner[a], corner[b]) = (along_a, along_b);
+                    let mut in_slab = corner;
+                    in_slab[slow] = 0;
+                    let start: usize = (0..3).map(|axis| in_slab[axis] * strides[axis]).sum();
+                    self.push_leaf(corner, &slab[start..], strides, &decode, &mut tree);
+                }
+            }
+        }
+        tree.leaf_values.shrink_to_fit();
+        Ok(tree)
+    }
+
+    /// The next `len` bytes, in little-endian order; memory grows only with the bytes that are really there.
+    fn read_slab(&self, source: &mut impl Read, len: usize, slab: &mut Vec<u8>) -> Result<(), Fault> {
+        slab.clear();
+        source.take(len as u64).read_to_end(slab)?;
+        if slab.len() < len {
+            return Err(Fault::damaged("truncated: the file ends before its voxels do"));
+        }
+        let size = self.element.size();
+        if self.byte_order == ByteOrder::Big && size > 1 {
+            slab.chunks_exact_mut(size).for_each(<[u8]>::reverse);
+        }
+        Ok(())
+    }
+
+    /// Adds the leaf at `corner`, whose first voxel is at the start of `bytes`.
+    fn push_leaf<T>(
+        &self,
+        corner: [usize; 3],
+        bytes: &[u8],
+        strides: [usize; 3],
+        decode: &impl Fn(&[u8]) -> T,
+        tree: &mut Tree<T>,
+    ) where
+        T: Copy + Default + PartialEq,
+    {
+        let [edge_x, edge_y, edge_z] = [0, 1, 2].map(|axis| EDGE.min(self.shape[axis] - corner[axis]));
+        let origin = corner.map(|index| index as i32);
+        let mut values = [T::default(); LEAF_VOXELS];
+        let mut active = [0; 8];
+        for x in 0..edge_x {
+            for y in 0..edge_y {
+                let row = x * strides[0] + y * strides[1];
+                for z in 0..edge_z {
+                    values[x << 6 | y << 3 | z] = decode(&bytes[row + z * strides[2]..]);
+                }
+                active[x] |= (0xff >> (EDGE - edge_z)) << (y << 3);
+            }
+        }
+        let full = edge_x * edge_y * edge_z == LEAF_VOXELS;
+        if full && values.iter().all(|value| *value == values[0]) {
+            tree.tiles.push(Tile { origin, log2_edge: 3, value: values[0], active: true });
+        } else {
+            tree.leaves.push(Leaf { origin, active });
+            tree.leaf_values.extend_from_slice(&values);
+        }
+    }
+}
