@@ -1,8 +1,10 @@
 //! The `tyndall` command.
 
 mod diff;
+mod inspect;
 mod merge;
 mod output;
+mod volume_input;
 
 use clap::Parser;
 
@@ -11,12 +13,14 @@ use clap::Parser;
 #[command(version)]
 enum Command {
     Diff(diff::Args),
+    Inspect(inspect::Args),
     Merge(merge::Args),
 }
 
 fn main() -> miette::Result<()> {
     match Command::parse() {
         Command::Diff(args) => diff::run(args),
+        Command::Inspect(args) => inspect::run(args),
         Command::Merge(args) => merge::run(args),
     }
 }
