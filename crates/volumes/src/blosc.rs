@@ -32,6 +32,7 @@ const BLOCK: usize = 1 << 18;
 const LZ4_MOST_RATIO: usize = 255;
 
 /// Decompresses one container that must hold exactly `expected_len` bytes.
+#[allow(dead_code)] // The reader of .nvdb files is its user.
 pub(crate) fn decompress(chunk: &[u8], expected_len: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     decompress_into(chunk, expected_len, &mut bytes, &mut Vec::new())?;
@@ -259,7 +260,7 @@ mod tests {
             value: u8,
             keep in 0usize..2000,
         ) {
-            let bytes: Vec<u8> = (0..2000u32).map(|i| (i * i >> 7) as u8).collect();
+            let bytes: Vec<u8> = (0..2000u32).map(|i| ((i * i) >> 7) as u8).collect();
             let mut chunk = compress(&bytes, 4);
             let at = at % chunk.len();
             chunk[at] = value;

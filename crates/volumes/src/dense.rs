@@ -69,27 +69,30 @@ impl Dense {
                 "an array of {x} x {y} x {z} voxels is too thin to be a volume; give it at least 8 voxels an axis"
             )));
         }
-        let (slope, intercept) = self.scale.unwrap_or((1.0, 0.0));
-        let (element, size) = (self.element, self.element.size());
-        Ok(match (self.channels, self.scale) {
-            (3, _) => GridValues::Vec3(self.build(source, |bytes| {
-                [0, 1, 2].map(|channel| (slope * element.decode(&bytes[channel * size..]) + intercept) as f32)
+        let reserve = available.is_some();
+        // Adding -0 changes nothing, not even the sign of a zero.
+        let (slope, intercept) = self.scale.unwrap_or((1.0, -0.0));
+        Ok(match (self.channels, self.element.fits_f32()) {
+            (3, _) => GridValues::Vec3(self.build(source, reserve, |numbers| {
+                [0, 1, 2].map(|channel| (slope * numbers[channel] + intercept) as f32)
             })?),
-            (_, None) if element.fits_f32() => {
-                GridValues::Float(self.build(source, |bytes| element.decode(bytes) as f32)?)
-            }
-            (_, Some(_)) if element.fits_f32() => GridValues::Float(
-                self.build(source, |bytes| (slope * element.decode(bytes) + intercept) as f32)?,
+            (_, true) => GridValues::Float(
+                self.build(source, reserve, |numbers| (slope * numbers[0] + intercept) as f32)?,
             ),
-            (_, None) => GridValues::Double(self.build(source, |bytes| element.decode(bytes))?),
-            (_, Some(_)) => {
-                GridValues::Double(self.build(source, |bytes| slope * element.decode(bytes) + intercept)?)
+            (_, false) => {
+                GridValues::Double(self.build(source, reserve, |numbers| slope * numbers[0] + intercept)?)
             }
         })
     }
 
-    /// Reads slab after slab; `decode` takes the little-endian bytes of a voxel.
-    fn build<T>(&self, source: &mut impl Read, decode: impl Fn(&[u8]) -> T) -> Result<Tree<T>, Fault>
+    /// Reads slab after slab; `value` takes the numbers of a voxel. `reserve` if the array is known to be
+    /// there in full.
+    fn build<T>(
+        &self,
+        source: &mut impl Read,
+        reserve: bool,
+        value: impl Fn(&[f64]) -> T,
+    ) -> Result<Tree<T>, Fault>
     where
         T: Copy + Default + PartialEq,
     {
@@ -102,6 +105,11 @@ impl Dense {
         };
         let mut tree =
             Tree { background: T::default(), tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
+        if reserve {
+            // Address space, not memory: pages are taken as leaves come, and nothing is ever copied to grow.
+            let leaves: usize = self.shape.iter().map(|edge| edge.div_ceil(EDGE)).product();
+            let _ = tree.leaf_values.try_reserve_exact(leaves.saturating_mul(LEAF_VOXELS));
+        }
         let mut slab = Vec::new();
         for first in (0..self.shape[slow]).step_by(EDGE) {
             let planes = EDGE.min(self.shape[slow] - first);
@@ -115,7 +123,7 @@ impl Dense {
                     let mut in_slab = corner;
                     in_slab[slow] = 0;
                     let start: usize = (0..3).map(|axis| in_slab[axis] * strides[axis]).sum();
-                    self.push_leaf(corner, &slab[start..], strides, &decode, &mut tree);
+                    self.push_leaf(corner, &slab[start..], strides, &value, &mut tree);
                 }
             }
         }
@@ -143,25 +151,36 @@ impl Dense {
         corner: [usize; 3],
         bytes: &[u8],
         strides: [usize; 3],
-        decode: &impl Fn(&[u8]) -> T,
+        value: &impl Fn(&[f64]) -> T,
         tree: &mut Tree<T>,
     ) where
         T: Copy + Default + PartialEq,
     {
-        let [edge_x, edge_y, edge_z] = [0, 1, 2].map(|axis| EDGE.min(self.shape[axis] - corner[axis]));
+        let edges = [0, 1, 2].map(|axis| EDGE.min(self.shape[axis] - corner[axis]));
         let origin = corner.map(|index| index as i32);
+        // Along the file: planes, rows of a plane, the voxels of a row.
+        let (plane_axis, fast_axis) = match self.axis_order {
+            AxisOrder::XFastest => (2, 0),
+            AxisOrder::ZFastest => (0, 2),
+        };
+        let shift = |axis: usize| 6 - 3 * axis;
         let mut values = [T::default(); LEAF_VOXELS];
-        let mut active = [0; 8];
-        for x in 0..edge_x {
-            for y in 0..edge_y {
-                let row = x * strides[0] + y * strides[1];
-                for z in 0..edge_z {
-                    values[x << 6 | y << 3 | z] = decode(&bytes[row + z * strides[2]..]);
+        let mut numbers = [0.0; 3 * EDGE];
+        let in_row = edges[fast_axis] * self.channels;
+        for plane in 0..edges[plane_axis] {
+            for y in 0..edges[1] {
+                let row = plane * strides[plane_axis] + y * strides[1];
+                self.element.decode(&bytes[row..row + in_row * self.element.size()], &mut numbers[..in_row]);
+                let first = plane << shift(plane_axis) | y << shift(1);
+                for (n, numbers) in numbers[..in_row].chunks_exact(self.channels).enumerate() {
+                    values[first | n << shift(fast_axis)] = value(numbers);
                 }
-                active[x] |= (0xff >> (EDGE - edge_z)) << (y << 3);
             }
         }
-        let full = edge_x * edge_y * edge_z == LEAF_VOXELS;
+        let row = 0xffu64 >> (EDGE - edges[2]);
+        let rows = (0..edges[1]).fold(0, |rows, y| rows | row << (8 * y));
+        let active = std::array::from_fn(|x| if x < edges[0] { rows } else { 0 });
+        let full = edges == [EDGE; 3];
         if full && values.iter().all(|value| *value == values[0]) {
             tree.tiles.push(Tile { origin, log2_edge: 3, value: values[0], active: true });
         } else {

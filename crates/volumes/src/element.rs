@@ -2,8 +2,6 @@
 
 use half::f16;
 
-use crate::little_endian::{f32_at, f64_at, i16_at, i32_at, u16_at, u32_at};
-
 /// Type of the numbers of a dense array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Element {
@@ -63,20 +61,23 @@ impl Element {
         !matches!(self, Self::Float64 | Self::UInt32 | Self::Int32)
     }
 
-    /// The number in little-endian `bytes`.
-    #[inline]
-    pub(crate) fn decode(self, bytes: &[u8]) -> f64 {
+    /// The numbers in little-endian `bytes`, as many as `numbers` has room for.
+    pub(crate) fn decode(self, bytes: &[u8], numbers: &mut [f64]) {
+        fn each<const SIZE: usize>(bytes: &[u8], numbers: &mut [f64], decode: impl Fn([u8; SIZE]) -> f64) {
+            let (chunks, _) = bytes.as_chunks::<SIZE>();
+            numbers.iter_mut().zip(chunks).for_each(|(number, chunk)| *number = decode(*chunk));
+        }
         match self {
-            Self::Float16 => f16::from_bits(u16_at(bytes, 0)).into(),
-            Self::Float32 => f32_at(bytes, 0).into(),
-            Self::Float64 => f64_at(bytes, 0),
-            Self::UInt8 => bytes[0].into(),
-            Self::UInt16 => u16_at(bytes, 0).into(),
-            Self::UInt32 => u32_at(bytes, 0).into(),
-            Self::Int8 => (bytes[0] as i8).into(),
-            Self::Int16 => i16_at(bytes, 0).into(),
-            Self::Int32 => i32_at(bytes, 0).into(),
-            Self::Bool => f64::from(bytes[0] != 0),
+            Self::Float16 => each(bytes, numbers, |bytes| f16::from_le_bytes(bytes).into()),
+            Self::Float32 => each(bytes, numbers, |bytes| f32::from_le_bytes(bytes).into()),
+            Self::Float64 => each(bytes, numbers, f64::from_le_bytes),
+            Self::UInt8 => each(bytes, numbers, |bytes| u8::from_le_bytes(bytes).into()),
+            Self::UInt16 => each(bytes, numbers, |bytes| u16::from_le_bytes(bytes).into()),
+            Self::UInt32 => each(bytes, numbers, |bytes| u32::from_le_bytes(bytes).into()),
+            Self::Int8 => each(bytes, numbers, |bytes| i8::from_le_bytes(bytes).into()),
+            Self::Int16 => each(bytes, numbers, |bytes| i16::from_le_bytes(bytes).into()),
+            Self::Int32 => each(bytes, numbers, |bytes| i32::from_le_bytes(bytes).into()),
+            Self::Bool => each(bytes, numbers, |bytes: [u8; 1]| f64::from(bytes[0] != 0)),
         }
     }
 }

@@ -40,3 +40,24 @@ pub enum ReadError {
         available: Vec<String>,
     },
 }
+
+/// Why a volume file cannot be written, as one line a user can act on.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The operating system refused.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// What is to be written has no place in the format.
+    #[error("{}: {what}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What cannot be written, and what the user can do instead.
+        what: String,
+    },
+}

@@ -27,11 +27,12 @@ mod vol;
 mod write;
 
 pub use element::{AxisOrder, ByteOrder, Element};
-pub use error::ReadError;
+pub use error::{ReadError, WriteError};
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};
 pub use open::{Format, ReadRequest, VolumeFile, read, read_bytes};
 pub use probe::Lookup;
 pub use raw::RawShape;
 pub use selection::GridSelection;
 pub use statistics::{Components, GridStatistics};
-pub use write::{Codec, WriteError, write};
+pub use vdb::{Codec, WriteOptions};
+pub use write::write;

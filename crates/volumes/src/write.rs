@@ -11,40 +11,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use crate::fault::Fault;
-use crate::{Format, Grid, nifti, npy, nvdb, raw, vol};
-
-/// Why a volume file cannot be written, as one line a user can act on.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    /// The operating system refused.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The format cannot hold this.
-    #[error("{}: {what}", path.display())]
-    Unsupported {
-        /// The file.
-        path: PathBuf,
-        /// What it cannot hold, and what the user can do instead.
-        what: String,
-    },
-}
-
-/// How the values in a file are compressed, where the format leaves a choice.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Codec {
-    /// Not at all.
-    None,
-    /// Deflate.
-    #[default]
-    Zip,
-    /// LZ4 of shuffled bytes: larger, faster.
-    Blosc,
-}
+use crate::{Codec, Format, Grid, WriteError, WriteOptions, nifti, npy, nvdb, raw, vdb, vol};
 
 /// Writes `grids` in the format of the extension of `path`; returns the path written, which for `.raw` is given the
 /// shape if it lacks it.
@@ -54,32 +21,36 @@ pub enum Codec {
 ///
 /// # Errors
 /// If the file cannot be written, or the format cannot hold these grids.
-pub fn write(path: &Path, grids: &[Grid], codec: Codec) -> Result<PathBuf, WriteError> {
-    let (path_written, result) = match Format::from_extension(path) {
-        Some(Format::Raw) => match only(grids).and_then(|grid| raw::name_with_shape(path, grid)) {
-            Ok(named) => (named, Ok(Format::Raw)),
-            Err(fault) => (path.to_path_buf(), Err(fault)),
-        },
-        Some(format) => (path.to_path_buf(), Ok(format)),
-        None => (
-            path.to_path_buf(),
-            Err(Fault::unsupported("name the file .vdb, .nvdb, .vol, .npy, .nii, .nii.gz or .raw")),
-        ),
-    };
-    let result =
-        result.and_then(|format| atomically(&path_written, |out| write_to(out, format, grids, codec)));
-    match result {
-        Ok(()) => Ok(path_written),
-        Err(Fault::Io(source)) => Err(WriteError::Io { path: path_written, source }),
-        Err(Fault::Damaged(what) | Fault::Unsupported(what)) => {
-            Err(WriteError::Unsupported { path: path_written, what })
+pub fn write(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<PathBuf, WriteError> {
+    let error = |fault| match fault {
+        Fault::Io(source) => WriteError::Io { path: path.to_path_buf(), source },
+        Fault::Damaged(what) | Fault::Unsupported(what) => {
+            WriteError::Unwritable { path: path.to_path_buf(), what }
         }
+    };
+    let format = Format::from_extension(path).ok_or_else(|| {
+        error(Fault::unsupported("name the file .vdb, .nvdb, .vol, .npy, .nii, .nii.gz or .raw"))
+    })?;
+    if format == Format::OpenVdb {
+        return vdb::write(path, grids, options).map(|()| path.to_path_buf());
     }
+    if options.half {
+        return Err(error(Fault::unsupported(
+            "only OpenVDB files are written in halves; name the file .vdb",
+        )));
+    }
+    let path_written = match format {
+        Format::Raw => only(grids).and_then(|grid| raw::name_with_shape(path, grid)).map_err(error)?,
+        _ => path.to_path_buf(),
+    };
+    atomically(&path_written, |out| write_to(out, format, grids, options.codec)).map_err(error)?;
+    Ok(path_written)
 }
 
+/// Writes a file of any format but that of OpenVDB, whose writer makes its own file.
 fn write_to(out: &mut dyn Write, format: Format, grids: &[Grid], codec: Codec) -> Result<(), Fault> {
     match format {
-        Format::OpenVdb => Err(Fault::unsupported("OpenVDB files are not written yet")),
+        Format::OpenVdb => Ok(()),
         Format::NanoVdb => nvdb::write(out, grids, codec),
         Format::Mitsuba => vol::write(out, only(grids)?),
         Format::NumPy => npy::write(out, only(grids)?),
@@ -87,7 +58,8 @@ fn write_to(out: &mut dyn Write, format: Format, grids: &[Grid], codec: Codec) -
         Format::NiftiGzip => {
             let mut packed = GzEncoder::new(out, Compression::default());
             nifti::write(&mut packed, only(grids)?)?;
-            packed.finish().map(drop).map_err(Fault::Io)
+            packed.finish().map_err(Fault::Io)?;
+            Ok(())
         }
         Format::Raw => raw::write(out, only(grids)?),
     }
@@ -106,10 +78,7 @@ fn only(grids: &[Grid]) -> Result<&Grid, Fault> {
 }
 
 /// Lets `write` fill a file beside `path`, which takes its place when all went well.
-pub(crate) fn atomically(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), Fault>) -> Result<(), Fault> {
     let Some(name) = path.file_name() else {
         return Err(Fault::unsupported("is no name for a file"));
     };

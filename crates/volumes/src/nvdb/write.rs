@@ -11,8 +11,7 @@ use glam::DVec3;
 
 use crate::fault::Fault;
 use crate::float_tree::FloatTree;
-use crate::write::Codec;
-use crate::{Grid, GridClass};
+use crate::{Codec, Grid, GridClass};
 
 use super::build::{Built, build};
 use super::layout::{ALIGNMENT, GRID_HEAD, LOWER, Layout, TREE_HEAD, UPPER, ValueType, align};

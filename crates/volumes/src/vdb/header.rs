@@ -28,7 +28,6 @@ const MOST_GRIDS: u32 = 4096;
 /// What the file says of itself.
 #[derive(Debug)]
 pub(super) struct Header {
-    pub(super) version: u32,
     /// Whether descriptors say where grids begin and end.
     pub(super) has_offsets: bool,
     pub(super) grid_count: u32,
@@ -55,7 +54,7 @@ impl Header {
             u32::try_from(grid_count).ok().filter(|&count| count <= MOST_GRIDS).ok_or_else(|| {
                 damaged(format!("the number of grids is {grid_count}, at most {MOST_GRIDS} are read"))
             })?;
-        Ok(Self { version, has_offsets, grid_count })
+        Ok(Self { has_offsets, grid_count })
     }
 }
 

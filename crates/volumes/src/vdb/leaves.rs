@@ -43,9 +43,15 @@ pub(super) fn find<T: Value>(
         cursor.take(MASK_BYTES, "the mask of a leaf")?;
         offsets.push(cursor.position());
         match kind {
-            LeafKind::Values => drop(Stored::find(cursor, &topology.coding, &leaf.active)?),
-            LeafKind::Bools => drop(cursor.take(ORIGIN_BYTES + MASK_BYTES, "a leaf")?),
-            LeafKind::Mask => drop(cursor.take(ORIGIN_BYTES, "a leaf")?),
+            LeafKind::Values => {
+                Stored::find(cursor, &topology.coding, &leaf.active)?;
+            }
+            LeafKind::Bools => {
+                cursor.take(ORIGIN_BYTES + MASK_BYTES, "a leaf")?;
+            }
+            LeafKind::Mask => {
+                cursor.take(ORIGIN_BYTES, "a leaf")?;
+            }
         }
     }
     Ok(offsets)

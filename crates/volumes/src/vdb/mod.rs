@@ -10,15 +10,21 @@
 //! Volumes with Dynamic Topology").
 
 mod cursor;
+mod encode;
 mod header;
 mod leaves;
 mod metadata;
+mod nodes;
 mod read;
+mod sink;
 mod topology;
 mod transform;
 mod tree;
 mod value;
 mod values;
 mod write;
+mod write_tree;
 
+pub use encode::Codec;
 pub use read::{SkippedGrid, VdbFile, read, read_bytes};
+pub use write::{WriteOptions, write};

@@ -13,7 +13,7 @@
 
 use super::cursor::{Cursor, Problem, damaged};
 use super::value::{self, Value, Width};
-use super::values::{Coding, Decoder, Stored};
+use super::values::{Coding, Decoder, Stored, is_set};
 use crate::{Leaf, Tile};
 use std::collections::HashSet;
 
@@ -99,13 +99,13 @@ impl<T: Value> Nodes<T> {
             [origin[0] + along(2 * log2), origin[1] + along(log2), origin[2] + along(0)]
         };
         for (entry, &value) in values.iter().enumerate() {
-            if !bit(&child_mask, entry) {
-                let active = bit(&active_mask, entry);
+            if !is_set(&child_mask, entry) {
+                let active = is_set(&active_mask, entry);
                 self.add_tile(Tile { origin: entry_origin(entry), log2_edge, value, active });
             }
         }
         drop(values);
-        for entry in (0..entries).filter(|&entry| bit(&child_mask, entry)) {
+        for entry in (0..entries).filter(|&entry| is_set(&child_mask, entry)) {
             let origin = entry_origin(entry);
             if level + 1 < LOG2_ENTRIES.len() {
                 self.read_inner(cursor, level + 1, origin)?;
@@ -129,8 +129,4 @@ fn grow_by_a_quarter<T>(items: &mut Vec<T>) {
 
 fn mask(bytes: &[u8]) -> Vec<u64> {
     bytes.as_chunks().0.iter().map(|&word| u64::from_le_bytes(word)).collect()
-}
-
-fn bit(mask: &[u64], index: usize) -> bool {
-    mask[index / 64] >> (index % 64) & 1 != 0
 }

@@ -171,6 +171,11 @@ pub(super) fn count_ones(mask: &[u64]) -> usize {
     mask.iter().map(|word| word.count_ones() as usize).sum()
 }
 
+/// Whether bit `index` of a mask is set.
+pub(super) fn is_set(mask: &[u64], index: usize) -> bool {
+    mask[index / 64] >> (index % 64) & 1 != 0
+}
+
 fn find_chunk<'a, T: Value>(
     cursor: &mut Cursor<'a>,
     coding: &Coding<T>,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tyndall_volumes::{Codec, Grid, GridValues, ReadRequest, read_bytes, write};
 
-use crate::facts::shared;
+use crate::facts::{options, shared};
 use crate::nvdb_files::{file_of, grid_of, mixed_tree};
 
 /// Knuth's MMIX generator, upper bits: enough to pick bytes with, and the same on every machine.
@@ -100,7 +100,7 @@ fn small(name: &str) -> (String, Vec<u8>) {
     let mut grid = grid_of("density", tree);
     grid.index_to_world = glam::DAffine3::from_scale(glam::DVec3::splat(0.5));
     let folder = tempfile::tempdir().expect("a folder");
-    let path = write(&folder.path().join(name), &[grid], Codec::None).expect("written");
+    let path = write(&folder.path().join(name), &[grid], &options(Codec::None)).expect("written");
     let name = path.file_name().expect("a name").to_string_lossy().into_owned();
     (name, std::fs::read(path).expect("readable"))
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use tyndall_volumes::{Grid, GridValues, Tree};
+use tyndall_volumes::{Codec, Grid, GridValues, Tree, WriteOptions};
 
 /// The tree of a grid of floats.
 #[track_caller]
@@ -21,4 +21,9 @@ pub fn shared(name: &str) -> Option<PathBuf> {
     }
     eprintln!("skipped: {} is not there", path.display());
     None
+}
+
+/// Floats in full, compressed by `codec`.
+pub fn options(codec: Codec) -> WriteOptions {
+    WriteOptions { codec, half: false }
 }

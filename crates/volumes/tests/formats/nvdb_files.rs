@@ -6,7 +6,7 @@ use glam::DAffine3;
 use tyndall_volumes::{Codec, Grid, GridClass, GridSelection, GridValues, Leaf, ReadRequest, Tile, Tree};
 use tyndall_volumes::{read, read_bytes, write};
 
-use crate::facts::float;
+use crate::facts::{float, options};
 
 /// A tree with a leaf, tiles of every size, active and not, on both sides of the origin.
 pub fn mixed_tree() -> Tree<f32> {
@@ -45,7 +45,7 @@ pub fn grid_of(name: &str, tree: Tree<f32>) -> Grid {
 /// The bytes of a NanoVDB file of `grids`.
 pub fn file_of(grids: &[Grid], codec: Codec) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = write(&folder.path().join("a.nvdb"), grids, codec).expect("written");
+    let path = write(&folder.path().join("a.nvdb"), grids, &options(codec)).expect("written");
     assert_eq!(
         std::fs::read_dir(folder.path()).expect("a folder").count(),
         1,
@@ -60,14 +60,14 @@ fn parse(bytes: &[u8]) -> Result<Vec<Grid>, String> {
         .map_err(|error| error.to_string())
 }
 
-/// Leaves and tiles in the order of their origins.
-fn sorted(tree: &Tree<f32>) -> (Vec<(Leaf, Vec<f32>)>, Vec<Tile<f32>>) {
-    let mut leaves: Vec<_> =
-        tree.leaves.iter().copied().zip(tree.leaf_values.chunks(512).map(<[f32]>::to_vec)).collect();
-    leaves.sort_by_key(|(leaf, _)| leaf.origin);
+/// Leaves, their values, and tiles, in the order of their origins.
+fn sorted(tree: &Tree<f32>) -> (Vec<Leaf>, Vec<f32>, Vec<Tile<f32>>) {
+    let mut order: Vec<_> = (0..tree.leaves.len()).collect();
+    order.sort_by_key(|&leaf| tree.leaves[leaf].origin);
     let mut tiles = tree.tiles.clone();
     tiles.sort_by_key(|tile| tile.origin);
-    (leaves, tiles)
+    let values = order.iter().flat_map(|leaf| &tree.leaf_values[leaf * 512..][..512]);
+    (order.iter().map(|&leaf| tree.leaves[leaf]).collect(), values.copied().collect(), tiles)
 }
 
 #[test]
@@ -154,8 +154,9 @@ fn a_failed_write_leaves_what_was_there() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.npy");
     std::fs::write(&path, "before").expect("writable");
-    let error =
-        write(&path, &[grid_of("density", mixed_tree())], Codec::None).expect_err("too large").to_string();
+    let error = write(&path, &[grid_of("density", mixed_tree())], &options(Codec::None))
+        .expect_err("too large")
+        .to_string();
     assert!(error.contains("is larger than 4 GiB as an array; write .vdb or .nvdb"), "{error}");
     assert_eq!(std::fs::read(&path).expect("readable"), b"before");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);

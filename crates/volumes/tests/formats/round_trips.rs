@@ -4,8 +4,10 @@ use std::path::Path;
 
 use glam::{DAffine3, DQuat, DVec3};
 use tyndall_volumes::{
-    Codec, Format, Grid, GridClass, GridValues, Leaf, ReadRequest, Tile, Tree, read, write,
+    Codec, Format, Grid, GridClass, GridValues, Leaf, ReadRequest, Tile, Tree, WriteOptions, read, write,
 };
+
+use crate::facts::options;
 
 /// Two leaves and a tile, with the box not on the grid of leaves.
 fn tree<T: Copy>(value: impl Fn(usize) -> T) -> Tree<T> {
@@ -50,7 +52,8 @@ fn turned() -> DAffine3 {
 
 fn through(name: &str, grid: &Grid) -> (Format, Grid) {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = write(&folder.path().join(name), std::slice::from_ref(grid), Codec::Zip).expect("written");
+    let path =
+        write(&folder.path().join(name), std::slice::from_ref(grid), &options(Codec::Zip)).expect("written");
     let file = read(&path, &ReadRequest::default()).expect("readable");
     let [back] = file.grids.try_into().expect("one grid");
     (file.format, back)
@@ -108,6 +111,28 @@ fn dense_formats_keep_every_value_of_the_active_box() {
 }
 
 #[test]
+fn sparse_formats_keep_the_very_voxels_and_the_map() {
+    for values in [
+        GridValues::Float(tree(|n| n as f32 * 0.1)),
+        GridValues::Vec3(tree(|n| [n as f32, -1.0, 0.5 * n as f32])),
+    ] {
+        let grid = grid(values, turned());
+        for (name, format) in [("a.vdb", Format::OpenVdb), ("a.nvdb", Format::NanoVdb)] {
+            let (found, back) = through(name, &grid);
+            assert_eq!(found, format);
+            assert_eq!(back.values.statistics(), grid.values.statistics());
+            assert_eq!(back.values.background(), grid.values.background());
+            assert!(back.index_to_world.abs_diff_eq(grid.index_to_world, 1e-12));
+            let [min, max] = [[-9, -1, -1], [17, 17, 17]];
+            let voxels: Vec<_> = (min[0]..max[0])
+                .flat_map(|x| (min[1]..max[1]).flat_map(move |y| (min[2]..max[2]).map(move |z| [x, y, z])))
+                .collect();
+            assert_eq!(back.values.probe(&voxels), grid.values.probe(&voxels));
+        }
+    }
+}
+
+#[test]
 fn other_types_become_floats() {
     for values in [
         GridValues::Double(tree(|n| n as f64)),
@@ -147,19 +172,23 @@ fn what_a_format_cannot_hold_is_refused_with_the_mend() {
     ];
     let folder = tempfile::tempdir().expect("a folder");
     for (name, grids, reason) in cases {
-        let error = write(&folder.path().join(name), grids, Codec::None).expect_err(name).to_string();
+        let error =
+            write(&folder.path().join(name), grids, &options(Codec::None)).expect_err(name).to_string();
         assert!(error.contains(reason) && !error.contains('\n'), "{error}");
     }
-    assert!(write(Path::new("/no/such/folder/a.npy"), &two[..1], Codec::None).is_err());
+    let half = WriteOptions { codec: Codec::None, half: true };
+    let error = write(&folder.path().join("a.nvdb"), &two, &half).expect_err("no halves").to_string();
+    assert!(error.contains("only OpenVDB files are written in halves"), "{error}");
+    assert!(write(Path::new("/no/such/folder/a.npy"), &two[..1], &options(Codec::None)).is_err());
 }
 
 #[test]
 fn a_raw_file_gets_its_shape_into_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let grids = [grid(GridValues::Float(tree(|n| n as f32)), upright())];
-    let path = write(&folder.path().join("a.raw"), &grids, Codec::None).expect("written");
+    let path = write(&folder.path().join("a.raw"), &grids, &options(Codec::None)).expect("written");
     let [min, max] = grids[0].values.statistics().active_bbox.expect("active voxels");
     let [x, y, z] = [0, 1, 2].map(|axis| max[axis] - min[axis] + 1);
     assert_eq!(path, folder.path().join(format!("a_{x}x{y}x{z}_float32.raw")));
-    assert_eq!(write(&path, &grids, Codec::None).expect("written again"), path);
+    assert_eq!(write(&path, &grids, &options(Codec::None)).expect("written again"), path);
 }
