@@ -5,6 +5,7 @@
 //! has, so that every program reads it. Attributes: `seed`, `samples` (such as `0..64`), `sceneHash`, `options`
 //! (text), `seconds` (double), `rejected` (text) and the standard `software`. Format: OpenEXR file layout, openexr.com.
 
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use exr::meta::attribute::{Chromaticities, LineOrder};
@@ -34,12 +35,37 @@ pub fn write_exr(path: &Path, film: &Film, metadata: &ImageMetadata) -> Result<(
     let layer = Layer::new(size, attributes(film, metadata), encoding, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(REC_709);
-    write_atomically(path, |file| {
-        image.write().to_buffered(file).map_err(|error| match error {
-            exr::error::Error::Io(error) => error,
-            other => std::io::Error::other(other),
-        })
-    })
+    let mut bytes = Cursor::new(Vec::new());
+    image
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(|error| FileError::unusable(path, format!("cannot be written as OpenEXR: {error}")))?;
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes);
+    write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// Puts the attributes of the header in the order of their names. The `exr` crate keeps some in a hash map, in an
+/// order that differs from run to run, and equal pictures shall be equal files.
+fn sort_attributes(file: &mut [u8]) {
+    /// Magic number and version.
+    const PREAMBLE: usize = 8;
+    // An attribute is its name and its type, each ended by a zero, the i32 length of its value, and its value; an
+    // empty name ends the header.
+    let length_of = |bytes: &[u8]| -> Option<usize> {
+        let name = bytes.iter().position(|&b| b == 0).filter(|&end| end > 0)? + 1;
+        let kind = bytes[name..].iter().position(|&b| b == 0)? + 1;
+        let value = bytes.get(name + kind..)?.first_chunk().map(|&n| i32::from_le_bytes(n))?;
+        Some(name + kind + 4 + usize::try_from(value).ok()?)
+    };
+    let mut attributes: Vec<Vec<u8>> = Vec::new();
+    let mut end = PREAMBLE;
+    while let Some(attribute) = file.get(end..).and_then(|rest| rest.get(..length_of(rest)?)) {
+        attributes.push(attribute.to_vec());
+        end += attribute.len();
+    }
+    attributes.sort();
+    file[PREAMBLE..end].copy_from_slice(&attributes.concat());
 }
 
 /// CIE 1931 xy of the primaries and of the white point D65 (ITU-R BT.709).
@@ -107,6 +133,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         write_exr(&path, &film, &metadata).unwrap();
+
+        let bytes = std::fs::read(&path).unwrap();
+        write_exr(&path, &film, &metadata).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), bytes, "equal pictures are equal files");
 
         let image = exr::prelude::read()
             .no_deep_data()

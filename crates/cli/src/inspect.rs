@@ -1,0 +1,65 @@
+//! `tyndall inspect`: what is in a volume file.
+
+mod report;
+mod table;
+
+use std::path::PathBuf;
+
+use miette::IntoDiagnostic;
+
+use crate::volume_input::{self, RawArgs};
+use report::Report;
+
+/// Tell what is in a volume file: grids, types, boxes, ranges, voxel size, memory
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  tyndall inspect smoke.vdb
+  tyndall inspect smoke.vdb --grid density --probe=10,-3,7 --json
+  tyndall inspect head.raw --raw-shape 256x256x109 --raw-type uint8")]
+pub struct Args {
+    /// A volume: .vdb .nvdb .vol .npy .nii .nii.gz .raw
+    file: PathBuf,
+    /// Only this grid; may be given several times
+    #[arg(long, value_name = "NAME")]
+    grid: Vec<String>,
+    /// Tell the value of the voxel at these index coordinates too; may be given several times
+    #[arg(long, value_name = "I,J,K", value_parser = voxel, allow_hyphen_values = true)]
+    probe: Vec<[i32; 3]>,
+    /// Answer in JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+/// Reads and prints.
+pub fn run(args: Args) -> miette::Result<()> {
+    let file = volume_input::read(&args.file, &args.grid, &args.raw)?;
+    let report = Report::new(&file, &args.probe);
+    if args.json {
+        println!("{}", serde_json::to_string(&report).into_diagnostic()?);
+    } else {
+        print!("{}", table::table(&args.file, &report));
+    }
+    Ok(())
+}
+
+fn voxel(text: &str) -> Result<[i32; 3], String> {
+    let indices: Result<Vec<i32>, _> = text.split(',').map(|index| index.trim().parse()).collect();
+    let indices = indices.ok().and_then(|indices| <[i32; 3]>::try_from(indices).ok());
+    indices.ok_or_else(|| "give three whole numbers such as 10,-3,7".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_voxel_is_three_whole_numbers_of_either_sign() {
+        assert_eq!(voxel("-1,2,-2147483648"), Ok([-1, 2, i32::MIN]));
+        for wrong in ["1,2", "1,2,3,4", "1,2,x", "1,2,2147483648"] {
+            assert!(voxel(wrong).is_err(), "{wrong}");
+        }
+    }
+}
