@@ -127,3 +127,24 @@ impl Diagnostic for SceneError {
         Some(Box::new(self.problems.iter().skip(1).map(|problem| problem as &dyn Diagnostic)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneDocument;
+
+    #[test]
+    fn a_diagnostic_shows_each_place_in_its_own_text() {
+        let text = "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nroll = 3\n[render]\nspp = 'many'\n";
+        let error =
+            SceneDocument::parse("scene.toml", text).and_then(|document| document.description()).unwrap_err();
+        let shown = |diagnostic: &dyn Diagnostic| {
+            let label = diagnostic.labels().unwrap().next().unwrap();
+            text[label.offset()..label.offset() + label.len()].to_owned()
+        };
+        assert_eq!(shown(&error), "roll");
+        let related: Vec<String> = error.related().unwrap().map(shown).collect();
+        assert_eq!(related, ["'many'"]);
+        assert!(error.source_code().is_some());
+    }
+}

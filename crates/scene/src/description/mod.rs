@@ -4,6 +4,7 @@
 //! range and its documentation stand in one place. Lengths are in scene units, angles in degrees, colours linear
 //! Rec. 709.
 
+mod automatic;
 mod camera;
 mod film;
 mod lights;
@@ -13,6 +14,7 @@ mod rules;
 mod transform;
 mod volume;
 
+pub use automatic::{AutomaticScene, VolumeSummary};
 pub use camera::CameraDescription;
 pub use film::{FilmDescription, Integrator, Layer, RenderDescription};
 pub use lights::{
