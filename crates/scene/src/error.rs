@@ -10,7 +10,8 @@ use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 /// A text under its name, shared by the problems in it.
 pub(crate) type SceneText = Arc<NamedSource<Arc<str>>>;
 
-/// Why a scene cannot be read or built. Displays as one line; as a [`Diagnostic`] it shows the place in the file.
+/// Why a scene cannot be read or built. Displays as one line; as a [`Diagnostic`] it shows the place in the
+/// file.
 #[derive(Debug, Clone)]
 pub struct SceneError {
     problems: Vec<Problem>,

@@ -143,7 +143,8 @@ fn check_sampler(name: &str, light: &Light, chart: &Chart) {
     assert!(tail > 1e-4, "{name}: χ² = {statistic} with {used} bins, p = {tail}");
 }
 
-/// The mean of radiance over pdf is the integral of the radiance, which a fine sum over a chart gives as well.
+/// The mean of radiance over pdf is the integral of the radiance, which a fine sum over a chart gives as
+/// well.
 fn check_unbiased(name: &str, light: &Light, chart: &Chart, tolerance: f64) {
     const COUNT: usize = 400_000;
     let mut random = Random(11);

@@ -1,9 +1,9 @@
 //! The scene of a bare volume: framed, lit by sun and sky, with a density scale chosen from the data.
 //!
-//! The extinction per grid value is `mu_t = 16 / (mean · ℓ)`: a body of the grid's mean value has the optical thickness
-//! 16 along ℓ, which is bright and opaque in the middle and still translucent at the rim. ℓ = b f^(1/3) is the size of the
-//! body: b is the middle one of the box's three edges and f the fraction of the box that is active, so that f^(1/3) is the
-//! part of an edge that a compact body fills.
+//! The extinction per grid value is `mu_t = 16 / (mean · ℓ)`: a body of the grid's mean value has the optical
+//! thickness 16 along ℓ, which is bright and opaque in the middle and still translucent at the rim. ℓ = b
+//! f^(1/3) is the size of the body: b is the middle one of the box's three edges and f the fraction of the
+//! box that is active, so that f^(1/3) is the part of an edge that a compact body fills.
 
 use glam::DVec3;
 use tyndall_volumes::GridClass;
@@ -57,7 +57,8 @@ const ASYMMETRY: f64 = 0.8;
 /// Part of the picture's width or height that the box fills.
 const FILLED: f64 = 0.9;
 const VERTICAL_FOV: f64 = 40.0;
-/// The sun stands in the east and the viewer south-east of the volume, so that light comes from the right and shapes it.
+/// The sun stands in the east and the viewer south-east of the volume, so that light comes from the right and
+/// shapes it.
 const SUN: [f64; 2] = [35.0, 90.0];
 /// Elevation and azimuth of the viewer as seen from the volume: below it, so that the sky is behind it.
 const VIEWER: [f64; 2] = [-20.0, 150.0];

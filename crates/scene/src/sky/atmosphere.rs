@@ -1,13 +1,14 @@
-//! The air: how dense each constituent is at a height, what it does at a wavelength, and how much of it a ray meets.
+//! The air: how dense each constituent is at a height, what it does at a wavelength, and how much of it a ray
+//! meets.
 //!
-//! Molecules fall off exponentially with height (8 km) and scatter by 1.24062 λ⁻⁴ per metre (λ in µm, at sea level);
-//! dust falls off with 1.2 km and has the thickness that the turbidity says, ∝ λ^-1.3 (Ångström 1929), of which 92 % is
-//! scattering (continental average of Hess, Koepke & Schult 1998); ozone absorbs, 300 Dobson units in a tent from 10 to
-//! 40 km with its top at 25 km. Profiles and Rayleigh coefficient: Bruneton 2017, "A Qualitative and Quantitative
-//! Evaluation of 8 Clear Sky Models" and its implementation.
+//! Molecules fall off exponentially with height (8 km) and scatter by 1.24062 λ⁻⁴ per metre (λ in µm, at sea
+//! level); dust falls off with 1.2 km and has the thickness that the turbidity says, ∝ λ^-1.3 (Ångström
+//! 1929), of which 92 % is scattering (continental average of Hess, Koepke & Schult 1998); ozone absorbs, 300
+//! Dobson units in a tent from 10 to 40 km with its top at 25 km. Profiles and Rayleigh coefficient: Bruneton
+//! 2017, "A Qualitative and Quantitative Evaluation of 8 Clear Sky Models" and its implementation.
 //!
-//! The optical thickness of a ray at any wavelength is a sum of three columns, the integrals of the densities:
-//! τ(λ) = Σ σ_i(λ) N_i. So only columns are tabulated.
+//! The optical thickness of a ray at any wavelength is a sum of three columns, the integrals of the
+//! densities: τ(λ) = Σ σ_i(λ) N_i. So only columns are tabulated.
 
 use std::f64::consts::PI;
 
@@ -146,8 +147,8 @@ impl Atmosphere {
     }
 }
 
-/// Columns to space by height (∝ square of the index) and by distance to space (likewise, between that straight up and
-/// that along the horizon; Bruneton & Neyret 2008 parametrise so).
+/// Columns to space by height (∝ square of the index) and by distance to space (likewise, between that
+/// straight up and that along the horizon; Bruneton & Neyret 2008 parametrise so).
 fn column_table() -> Vec<Amounts> {
     let mut table = Vec::with_capacity(COLUMN_HEIGHTS * COLUMN_DIRECTIONS);
     for i in 0..COLUMN_HEIGHTS {

@@ -1,8 +1,10 @@
-//! What a viewer sees in each direction: single scattering along the line of sight, and the ground through the air.
+//! What a viewer sees in each direction: single scattering along the line of sight, and the ground through
+//! the air.
 //!
-//! L = ∫ T (σm pm(ν) S + σd pd(ν) S + (σm + σd) Ψ) dt + T Lg, with the sun's transmittance S, the cosine ν between line of
-//! sight and sun, and below the horizon the lit ground Lg = albedo / π · E. The strongly forward phase function of dust is
-//! left out of the table and put back for each direction, so that a coarse table (finest at the horizon) is enough.
+//! L = ∫ T (σm pm(ν) S + σd pd(ν) S + (σm + σd) Ψ) dt + T Lg, with the sun's transmittance S, the cosine ν
+//! between line of sight and sun, and below the horizon the lit ground Lg = albedo / π · E. The strongly
+//! forward phase function of dust is left out of the table and put back for each direction, so that a coarse
+//! table (finest at the horizon) is enough.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -131,7 +133,8 @@ impl Air {
         Self { atmosphere, multiple, sun, ground_albedo }
     }
 
-    /// What is seen at elevations by a parameter from 0 to 1, each at azimuths from the sun's to the opposite one.
+    /// What is seen at elevations by a parameter from 0 to 1, each at azimuths from the sun's to the opposite
+    /// one.
     fn table(
         &self,
         radius: f64,
@@ -153,8 +156,9 @@ impl Air {
         table
     }
 
-    /// Radiance along a line of sight without and only with the sunlight that dust scattered once, the latter over dust's
-    /// phase function. With the sky's irradiance of the ground, the line ends there; without, in space.
+    /// Radiance along a line of sight without and only with the sunlight that dust scattered once, the latter
+    /// over dust's phase function. With the sky's irradiance of the ground, the line ends there; without, in
+    /// space.
     fn line_of_sight(
         &self,
         radius: f64,
