@@ -1,8 +1,8 @@
 //! The perspective camera: a pinhole, or a thin lens of finite aperture.
 //!
-//! A point of the film goes through the centre of the lens to the point in focus; a thin lens sends all rays from
-//! that film point through the same point in focus (Kolb, Mitchell & Hanrahan 1995, section 2). Pixels are filtered
-//! by a box: a film point is uniform in its pixel.
+//! A point of the film goes through the centre of the lens to the point in focus; a thin lens sends all rays
+//! from that film point through the same point in focus (Kolb, Mitchell & Hanrahan 1995, section 2). Pixels
+//! are filtered by a box: a film point is uniform in its pixel.
 
 use glam::DVec3;
 
@@ -68,7 +68,8 @@ impl Camera {
 
     /// The ray through a point of a pixel (column, row; row 0 is the top) and a point of the lens.
     ///
-    /// `film_u` in [0, 1)² is the place in the pixel from its left upper corner, `lens_u` in [0, 1)² that on the lens.
+    /// `film_u` in [0, 1)² is the place in the pixel from its left upper corner, `lens_u` in [0, 1)² that on
+    /// the lens.
     pub fn ray(&self, pixel: [u32; 2], film_u: [f64; 2], lens_u: [f64; 2]) -> Ray {
         let x = ((f64::from(pixel[0]) + film_u[0]) / f64::from(self.resolution[0]) - 0.5) * self.film_size[0];
         let y = (0.5 - (f64::from(pixel[1]) + film_u[1]) / f64::from(self.resolution[1])) * self.film_size[1];

@@ -10,7 +10,8 @@ use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 /// A text under its name, shared by the problems in it.
 pub(crate) type SceneText = Arc<NamedSource<Arc<str>>>;
 
-/// Why a scene cannot be read or built. Displays as one line; as a [`Diagnostic`] it shows the place in the file.
+/// Why a scene cannot be read or built. Displays as one line; as a [`Diagnostic`] it shows the place in the
+/// file.
 #[derive(Debug, Clone)]
 pub struct SceneError {
     problems: Vec<Problem>,
@@ -125,5 +126,26 @@ impl Diagnostic for SceneError {
 
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
         Some(Box::new(self.problems.iter().skip(1).map(|problem| problem as &dyn Diagnostic)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneDocument;
+
+    #[test]
+    fn a_diagnostic_shows_each_place_in_its_own_text() {
+        let text = "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nroll = 3\n[render]\nspp = 'many'\n";
+        let error =
+            SceneDocument::parse("scene.toml", text).and_then(|document| document.description()).unwrap_err();
+        let shown = |diagnostic: &dyn Diagnostic| {
+            let label = diagnostic.labels().unwrap().next().unwrap();
+            text[label.offset()..label.offset() + label.len()].to_owned()
+        };
+        assert_eq!(shown(&error), "roll");
+        let related: Vec<String> = error.related().unwrap().map(shown).collect();
+        assert_eq!(related, ["'many'"]);
+        assert!(error.source_code().is_some());
     }
 }

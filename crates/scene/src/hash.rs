@@ -21,9 +21,9 @@ impl fmt::Display for SceneHash {
 
 /// Hash of a scene whose file names are relative to `folder`.
 ///
-/// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they name.
-/// It leaves out what does not change the expected picture: where the files are, names, unit, comments, samples per
-/// pixel, seed, integrator, exposure and layers.
+/// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they
+/// name. It leaves out what does not change the expected picture: where the files are, names, unit, comments,
+/// samples per pixel, seed, integrator, exposure and layers.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     canonical.unit.clear();

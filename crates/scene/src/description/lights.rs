@@ -1,7 +1,7 @@
 //! `[[light]]`: where the light comes from.
 //!
-//! Directions of the compass in all lights: +y is up, -z is north, +x is east; azimuth counts from north through
-//! east. `direction` is the way the light travels; `toward_sun` points to the sun.
+//! Directions of the compass in all lights: +y is up, -z is north, +x is east; azimuth counts from north
+//! through east. `direction` is the way the light travels; `toward_sun` points to the sun.
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -35,8 +35,8 @@ pub struct ConstantLightDescription {
     pub radiance: Rgb,
 }
 
-/// An equirectangular picture of the surroundings: the top row is +y, the middle column is -z (north), and columns
-/// to the right of it are +x (east), as seen from inside.
+/// An equirectangular picture of the surroundings: the top row is +y, the middle column is -z (north), and
+/// columns to the right of it are +x (east), as seen from inside.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(inline)]
 pub struct ImageLightDescription {
@@ -80,8 +80,8 @@ pub struct SkyDescription {
     /// Instead of both: a vector that points to the sun.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub toward_sun: Option<[f64; 3]>,
-    /// Haze: optical thickness of the whole air over that of its molecules alone, straight up at 550 nm. 1 is air
-    /// without dust, 2 a clear day, 5 a hazy one.
+    /// Haze: optical thickness of the whole air over that of its molecules alone, straight up at 550 nm. 1 is
+    /// air without dust, 2 a clear day, 5 a hazy one.
     #[schemars(range(min = 1, max = 20))]
     pub turbidity: f64,
     /// Height of the viewer above the ground, metres; softens the horizon.
@@ -162,7 +162,8 @@ fn one() -> f64 {
 }
 
 impl SkyDescription {
-    /// Unit vector to the sun. Where the scene does not say, the sun stands 40 degrees high in the south-east.
+    /// Unit vector to the sun. Where the scene does not say, the sun stands 40 degrees high in the
+    /// south-east.
     pub fn toward_sun(&self) -> DVec3 {
         if let Some(direction) = self.toward_sun.and_then(|v| DVec3::from_array(v).try_normalize()) {
             return direction;
@@ -171,7 +172,8 @@ impl SkyDescription {
     }
 }
 
-/// The unit vector at an elevation above the horizon and an azimuth from north (-z) through east (+x), degrees.
+/// The unit vector at an elevation above the horizon and an azimuth from north (-z) through east (+x),
+/// degrees.
 pub(super) fn direction_of_compass(elevation: f64, azimuth: f64) -> DVec3 {
     let (sin_elevation, cos_elevation) = elevation.to_radians().sin_cos();
     let (sin_azimuth, cos_azimuth) = azimuth.to_radians().sin_cos();

@@ -1,7 +1,7 @@
 //! The optical properties of a medium: coefficients, phase function, emission.
 //!
-//! `mu_t = mu_a + mu_s` [1/length], `albedo = mu_s / mu_t`, mean free path `1 / mu_t`. For a grid the coefficients
-//! are those where the grid's value is 1; elsewhere they are multiplied by the value.
+//! `mu_t = mu_a + mu_s` [1/length], `albedo = mu_s / mu_t`, mean free path `1 / mu_t`. For a grid the
+//! coefficients are those where the grid's value is 1; elsewhere they are multiplied by the value.
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::rgb::{Rgb, fraction};
 
-/// The optical properties of a medium. Coefficients are given as exactly one of the pairs `mu_t` and `albedo`,
-/// `mu_a` and `mu_s`, `mean_free_path` and `albedo`.
+/// The optical properties of a medium. Coefficients are given as exactly one of the pairs `mu_t` and
+/// `albedo`, `mu_a` and `mu_s`, `mean_free_path` and `albedo`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MediumDescription {
     /// Extinction coefficient, per scene unit; grey.
@@ -63,7 +63,8 @@ pub struct Coefficients {
     pub albedo: DVec3,
 }
 
-/// Relative difference of the channels of `mu_a + mu_s` that still counts as grey: decimals that were rounded.
+/// Relative difference of the channels of `mu_a + mu_s` that still counts as grey: decimals that were
+/// rounded.
 const GREY_TOLERANCE: f64 = 1e-6;
 
 impl MediumDescription {

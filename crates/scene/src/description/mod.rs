@@ -1,9 +1,10 @@
 //! What the user wrote: a scene as plain data, one struct for each table of the scene file.
 //!
-//! The types are read by serde, and the JSON schema that checks a file is generated from them, so that a key, its
-//! range and its documentation stand in one place. Lengths are in scene units, angles in degrees, colours linear
-//! Rec. 709.
+//! The types are read by serde, and the JSON schema that checks a file is generated from them, so that a key,
+//! its range and its documentation stand in one place. Lengths are in scene units, angles in degrees, colours
+//! linear Rec. 709.
 
+mod automatic;
 mod camera;
 mod film;
 mod lights;
@@ -13,6 +14,7 @@ mod rules;
 mod transform;
 mod volume;
 
+pub use automatic::{AutomaticScene, VolumeSummary};
 pub use camera::CameraDescription;
 pub use film::{FilmDescription, Integrator, Layer, RenderDescription};
 pub use lights::{
@@ -49,8 +51,8 @@ pub struct SceneDescription {
     /// A homogeneous medium that fills the whole scene, such as fog.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub medium: Option<MediumDescription>,
-    /// Volumes: grids from files, homogeneous shapes, procedural clouds. Where they overlap, their coefficients
-    /// add.
+    /// Volumes: grids from files, homogeneous shapes, procedural clouds. Where they overlap, their
+    /// coefficients add.
     #[serde(default, rename = "volume", skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeDescription>,
     /// Lights.

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::medium::MediumDescription;
 use super::transform::TransformDescription;
 
-/// A volume: exactly one of `file`, `box`, `sphere`, `slab`, `procedural`, and the optical properties of what fills
-/// it.
+/// A volume: exactly one of `file`, `box`, `sphere`, `slab`, `procedural`, and the optical properties of what
+/// fills it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VolumeDescription {
     /// A name for messages.
@@ -16,7 +16,8 @@ pub struct VolumeDescription {
     /// Volume file (.vdb, .nvdb, .vol, .npy, .raw, .nii, .nii.gz), relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// Name of the file's grid that multiplies the coefficients; by default the one that looks like a density.
+    /// Name of the file's grid that multiplies the coefficients; by default the one that looks like a
+    /// density.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid: Option<String>,
     /// What the grid's values are; by default what the file says.
@@ -103,8 +104,8 @@ impl VolumeDescription {
 pub enum GridMeaning {
     /// A density: multiplies the coefficients as it is; negative values count as 0.
     Density,
-    /// A signed distance in world units (a level set): density 1 inside, 0 outside, with a ramp one voxel wide
-    /// about the surface.
+    /// A signed distance in world units (a level set): density 1 inside, 0 outside, with a ramp one voxel
+    /// wide about the surface.
     SignedDistance,
 }
 

@@ -1,7 +1,8 @@
 //! The equirectangular map between directions and the unit square.
 //!
-//! v = θ / π from +y (0, the top row) to -y (1, the bottom row); u = 1/2 + φ / 2π with the azimuth φ from -z (north, the
-//! middle of the picture) through +x (east, to the right), so that the picture is seen from inside unmirrored.
+//! v = θ / π from +y (0, the top row) to -y (1, the bottom row); u = 1/2 + φ / 2π with the azimuth φ from -z
+//! (north, the middle of the picture) through +x (east, to the right), so that the picture is seen from
+//! inside unmirrored.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,9 +1,9 @@
 //! An equirectangular picture of the surroundings, sampled in proportion to its radiance.
 //!
-//! The sphere is cut into one cell for each texel; a cell is chosen with probability ∝ L̄ Ω, with L̄ the mean of the
-//! *filtered* radiance over the cell and Ω its solid angle, and a direction uniformly within it: pdf = P / Ω. The mean
-//! over the cell of the bilinear filter takes the neighbours with weights (1, 6, 1)/8 along each axis, so that the pdf
-//! is positive wherever the radiance is.
+//! The sphere is cut into one cell for each texel; a cell is chosen with probability ∝ L̄ Ω, with L̄ the mean
+//! of the *filtered* radiance over the cell and Ω its solid angle, and a direction uniformly within it: pdf =
+//! P / Ω. The mean over the cell of the bilinear filter takes the neighbours with weights (1, 6, 1)/8 along
+//! each axis, so that the pdf is positive wherever the radiance is.
 
 use std::f64::consts::PI;
 
@@ -23,8 +23,9 @@ pub struct LightImage {
 }
 
 impl LightImage {
-    /// The picture of `width` times `height` texels. None if the numbers do not fit or are 0. Values that are no
-    /// radiance are mended as [`mended`](Self::mended) says.
+    /// The picture of `width` times `height` texels. None if the numbers do not fit or are 0. Values that are
+    /// no radiance are mended: NaN and negative values become 0, infinite ones the greatest finite
+    /// value.
     pub fn new(width: usize, height: usize, texels: Vec<[f32; 3]>) -> Option<Self> {
         if texels.is_empty() || width.checked_mul(height) != Some(texels.len()) {
             return None;
@@ -32,8 +33,8 @@ impl LightImage {
         Some(Self::mended(width, height, texels).0)
     }
 
-    /// The picture with NaN and negative values made 0 and infinite ones the greatest finite value of the picture, and
-    /// how many there were.
+    /// The picture with NaN and negative values made 0 and infinite ones the greatest finite value of the
+    /// picture, and how many there were.
     pub(crate) fn mended(width: usize, height: usize, mut texels: Vec<[f32; 3]>) -> (Self, usize) {
         let values = || texels.iter().flatten().copied();
         let greatest = values().filter(|value| value.is_finite()).fold(0.0, f32::max);

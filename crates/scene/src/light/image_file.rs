@@ -12,8 +12,8 @@ use image::ImageDecoder;
 use super::image::LightImage;
 use crate::error::SceneError;
 
-/// Texels that a byte of a file may stand for. Constant pictures compress well, but a file that claims more is damaged,
-/// and memory for it must not be asked for.
+/// Texels that a byte of a file may stand for. Constant pictures compress well, but a file that claims more
+/// is damaged, and memory for it must not be asked for.
 const TEXELS_A_BYTE: u64 = 4096;
 
 /// Texels of the largest picture that is read, 12 bytes each in memory.

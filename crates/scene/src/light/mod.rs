@@ -1,8 +1,8 @@
 //! Lights ready to trace: each can be sampled from a point, and says what it shines from a direction.
 //!
-//! Infinite lights (constant, image, sun) have a radiance for every direction and a density of their samples over
-//! solid angle; distant and point lights are delta lights, which only sampling finds. All samplers are unbiased:
-//! the mean of `radiance_over_pdf · f(toward)` is the integral of `radiance · f` over the sphere.
+//! Infinite lights (constant, image, sun) have a radiance for every direction and a density of their samples
+//! over solid angle; distant and point lights are delta lights, which only sampling finds. All samplers are
+//! unbiased: the mean of `radiance_over_pdf · f(toward)` is the integral of `radiance · f` over the sphere.
 
 mod build;
 mod constant;
@@ -67,8 +67,8 @@ impl Light {
         }
     }
 
-    /// Radiance that arrives from far away along the unit vector `direction`, which points to where it comes from.
-    /// Zero for delta lights.
+    /// Radiance that arrives from far away along the unit vector `direction`, which points to where it comes
+    /// from. Zero for delta lights.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         match self {
             Self::Constant(light) => light.radiance(),
@@ -78,7 +78,8 @@ impl Light {
         }
     }
 
-    /// Density over solid angle, 1/sr, with which [`sample`](Self::sample) chooses `direction`; 0 for delta lights.
+    /// Density over solid angle, 1/sr, with which [`sample`](Self::sample) chooses `direction`; 0 for delta
+    /// lights.
     pub fn pdf(&self, direction: DVec3) -> f64 {
         match self {
             Self::Constant(light) => light.pdf(),

@@ -27,7 +27,8 @@ impl PointLight {
     pub(super) fn sample(&self, from: DVec3) -> LightSample {
         let offset = self.position - from;
         let distance = offset.length();
-        // At the light itself there is no direction to it; the single point carries no weight in any integral.
+        // At the light itself there is no direction to it; the single point carries no weight in any
+        // integral.
         let (toward, irradiance) = match offset.try_normalize() {
             Some(toward) => (toward, self.intensity / (distance * distance)),
             None => (DVec3::Y, DVec3::ZERO),

@@ -1,8 +1,8 @@
 //! A far disc of uniform radiance, sampled uniformly over its cone.
 //!
-//! With the half angle α: solid angle Ω = 2π (1 - cos α) = 4π sin²(α/2), pdf = 1 / Ω. The irradiance of a surface that
-//! faces the disc's centre is L ∫ cos θ dω = L π sin² α, which gives the radiance L. For the sun Ω is 7e-5 sr, so
-//! 1 - cos is kept instead of cos.
+//! With the half angle α: solid angle Ω = 2π (1 - cos α) = 4π sin²(α/2), pdf = 1 / Ω. The irradiance of a
+//! surface that faces the disc's centre is L ∫ cos θ dω = L π sin² α, which gives the radiance L. For the sun
+//! Ω is 7e-5 sr, so 1 - cos is kept instead of cos.
 
 use std::f64::consts::{PI, TAU};
 
@@ -23,8 +23,8 @@ pub struct SunLight {
 }
 
 impl SunLight {
-    /// A disc in the direction `toward` (any length), `angular_diameter` degrees across (above 0, at most 90), that
-    /// gives `irradiance` on a surface facing it.
+    /// A disc in the direction `toward` (any length), `angular_diameter` degrees across (above 0, at most
+    /// 90), that gives `irradiance` on a surface facing it.
     pub fn new(toward: DVec3, irradiance: DVec3, angular_diameter: f64) -> Self {
         let toward = toward.normalize_or(DVec3::Y);
         let (first, second) = toward.any_orthonormal_pair();

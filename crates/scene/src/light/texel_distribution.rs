@@ -1,8 +1,8 @@
 //! Choosing a texel of an equirectangular picture in proportion to its weight, without error from rounding.
 //!
-//! Row first, then column, each by inverting a cumulative table. Within a row the weights are rounded to integers that
-//! sum to about 2³¹, at least 1 where the weight is positive: the probability that is reported is exactly that of the
-//! choice, and no positive weight is lost.
+//! Row first, then column, each by inverting a cumulative table. Within a row the weights are rounded to
+//! integers that sum to about 2³¹, at least 1 where the weight is positive: the probability that is reported
+//! is exactly that of the choice, and no positive weight is lost.
 
 /// A distribution over `width` × `height` texels.
 #[derive(Debug, Clone)]

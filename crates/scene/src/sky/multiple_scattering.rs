@@ -1,9 +1,9 @@
 //! Light scattered twice and more often, taken as isotropic.
 //!
-//! Hillaire 2020, section 5.5: with L₂ the mean over all directions of sunlight scattered once (isotropically) or reflected
-//! by the ground, and f the mean over all directions of ∫ σs T dt, the fraction of an isotropic unit radiance that comes
-//! back, every further order is f times the one before, so that the radiance in the scattering integral is
-//! Ψ = L₂ (1 + f + f² + …) = L₂ / (1 - f).
+//! Hillaire 2020, section 5.5: with L₂ the mean over all directions of sunlight scattered once
+//! (isotropically) or reflected by the ground, and f the mean over all directions of ∫ σs T dt, the fraction
+//! of an isotropic unit radiance that comes back, every further order is f times the one before, so that the
+//! radiance in the scattering integral is Ψ = L₂ (1 + f + f² + …) = L₂ / (1 - f).
 
 use std::f64::consts::PI;
 
@@ -19,8 +19,8 @@ const HEIGHTS: usize = 12;
 const SUNS: usize = 15;
 const DIRECTIONS: usize = 48;
 const STEPS: usize = 16;
-/// The sun's height changes along a line of sight by the Earth's curvature: up to 10 degrees to the end of the air, and
-/// the points that lines of sight meet are no farther.
+/// The sun's height changes along a line of sight by the Earth's curvature: up to 10 degrees to the end of
+/// the air, and the points that lines of sight meet are no farther.
 const SUN_RANGE: f64 = 11.0 * PI / 180.0;
 
 /// Ψ by height and by the sun's zenith angle in a range about that at the viewer.

@@ -1,7 +1,8 @@
 //! Sixteen wavelengths, sunlight at them, and what the eye makes of it.
 //!
-//! Colour matching functions: the analytic fit of Wyman, Sloan & Shirley 2013, "Simple Analytic Approximations to the
-//! CIE XYZ Color Matching Functions". XYZ to linear Rec. 709 for a D65 white (IEC 61966-2-1).
+//! Colour matching functions: the analytic fit of Wyman, Sloan & Shirley 2013, "Simple Analytic
+//! Approximations to the CIE XYZ Color Matching Functions". XYZ to linear Rec. 709 for a D65 white (IEC
+//! 61966-2-1).
 
 use std::array;
 use std::f64::consts::PI;
@@ -22,15 +23,15 @@ pub(super) fn wavelengths() -> Spectrum {
     array::from_fn(|index| 400.0 + STEP * index as f64)
 }
 
-/// Solar irradiance outside the atmosphere, W/(m² nm): means of ASTM G-173 over each band, at the mean distance of the
-/// sun.
+/// Solar irradiance outside the atmosphere, W/(m² nm): means of ASTM G-173 over each band, at the mean
+/// distance of the sun.
 pub(super) const SOLAR_IRRADIANCE: Spectrum = [
     1.437, 1.710, 1.762, 2.028, 1.978, 1.937, 1.849, 1.872, 1.842, 1.825, 1.767, 1.689, 1.626, 1.539, 1.493,
     1.429,
 ];
 
-/// Absorption cross-section of ozone at 233 K, 1e-25 m²: means over each band of the spectra of Gorshelev et al. 2014
-/// and Serdyuchenko et al. 2014.
+/// Absorption cross-section of ozone at 233 K, 1e-25 m²: means over each band of the spectra of Gorshelev et
+/// al. 2014 and Serdyuchenko et al. 2014.
 pub(super) const OZONE_CROSS_SECTION: Spectrum = [
     0.0110, 0.0414, 0.1214, 0.2993, 0.6338, 1.1908, 1.8705, 2.9230, 3.8830, 4.5350, 4.8600, 4.0225, 2.9385,
     2.0450, 1.3410, 0.8439,
@@ -41,8 +42,8 @@ pub(super) fn each(f: impl FnMut(usize) -> f64) -> Spectrum {
     array::from_fn(f)
 }
 
-/// Spectral radiance or irradiance, in units of solar irradiance, to linear Rec. 709 in units of 100,000 lm/m² / π.
-/// Colours outside the gamut are clipped.
+/// Spectral radiance or irradiance, in units of solar irradiance, to linear Rec. 709 in units of 100,000
+/// lm/m² / π. Colours outside the gamut are clipped.
 pub(super) struct ToRgb {
     weights: [DVec3; COUNT],
 }

@@ -1,8 +1,10 @@
-//! What a viewer sees in each direction: single scattering along the line of sight, and the ground through the air.
+//! What a viewer sees in each direction: single scattering along the line of sight, and the ground through
+//! the air.
 //!
-//! L = ∫ T (σm pm(ν) S + σd pd(ν) S + (σm + σd) Ψ) dt + T Lg, with the sun's transmittance S, the cosine ν between line of
-//! sight and sun, and below the horizon the lit ground Lg = albedo / π · E. The strongly forward phase function of dust is
-//! left out of the table and put back for each direction, so that a coarse table (finest at the horizon) is enough.
+//! L = ∫ T (σm pm(ν) S + σd pd(ν) S + (σm + σd) Ψ) dt + T Lg, with the sun's transmittance S, the cosine ν
+//! between line of sight and sun, and below the horizon the lit ground Lg = albedo / π · E. The strongly
+//! forward phase function of dust is left out of the table and put back for each direction, so that a coarse
+//! table (finest at the horizon) is enough.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -17,10 +19,12 @@ use super::spectrum::{self, COUNT, Spectrum, ToRgb};
 use crate::description::SkyDescription;
 use crate::light::{LightImage, uv_to_direction};
 
-const AZIMUTHS: usize = 33;
-const ELEVATIONS_OF_SKY: usize = 64;
-const ELEVATIONS_OF_GROUND: usize = 32;
+const AZIMUTHS: usize = 25;
+const ELEVATIONS_OF_SKY: usize = 48;
+const ELEVATIONS_OF_GROUND: usize = 16;
 const STEPS: usize = 40;
+/// Lines of sight to the ground are short or bright at their end.
+const STEPS_TO_GROUND: usize = 16;
 const IMAGE_SIZE: [usize; 2] = [1024, 512];
 /// A viewer on the ground itself would have no air before the ground.
 const LEAST_ALTITUDE: f64 = 1.0;
@@ -52,39 +56,17 @@ impl Sky {
     pub fn new(description: &SkyDescription) -> Self {
         let toward_sun = description.toward_sun();
         let radius = EARTH_RADIUS + description.altitude.max(LEAST_ALTITUDE);
-        let ground_albedo = spectrum::reflectance(description.ground_albedo.channels());
-        let atmosphere = Atmosphere::new(description.turbidity);
-        let zenith_angle = toward_sun.y.clamp(-1.0, 1.0).acos();
-        let multiple = MultipleScattering::new(&atmosphere, &ground_albedo, zenith_angle);
-        let air = Air {
-            atmosphere,
-            multiple,
-            sun: DVec3::new(zenith_angle.sin(), toward_sun.y, 0.0),
-            ground_albedo,
-        };
+        let air = Air::new(description);
 
         let to_rgb = ToRgb::new();
         let scaled = |spectrum: &Spectrum| to_rgb.convert(spectrum) * description.intensity;
         let sun_irradiance = scaled(&air.atmosphere.sun_transmittance(radius, toward_sun.y));
         let horizon = -(EARTH_RADIUS / radius).min(1.0).acos();
         let sky_irradiance = air.sky_irradiance();
-        let table =
-            |elevations: usize, elevation_at: &dyn Fn(f64) -> f64, sky_irradiance: Option<&Spectrum>| {
-                let mut table = Vec::with_capacity(elevations * AZIMUTHS);
-                for i in 0..elevations {
-                    let elevation = elevation_at(i as f64 / (elevations - 1) as f64);
-                    for j in 0..AZIMUTHS {
-                        let azimuth = PI * j as f64 / (AZIMUTHS - 1) as f64;
-                        let (radiance, dust) =
-                            air.line_of_sight(radius, elevation, azimuth, sky_irradiance, STEPS);
-                        table.push(Sighted { radiance: scaled(&radiance), dust: scaled(&dust) });
-                    }
-                }
-                table
-            };
-        let sky = table(ELEVATIONS_OF_SKY, &|t| horizon + (FRAC_PI_2 - horizon) * t * t, None);
-        let ground =
-            table(ELEVATIONS_OF_GROUND, &|t| horizon - (FRAC_PI_2 + horizon) * t * t, Some(&sky_irradiance));
+        let sky =
+            air.table(radius, ELEVATIONS_OF_SKY, |t| horizon + (FRAC_PI_2 - horizon) * t * t, None, scaled);
+        let to_nadir = |t: f64| horizon - (FRAC_PI_2 + horizon) * t * t;
+        let ground = air.table(radius, ELEVATIONS_OF_GROUND, to_nadir, Some(&sky_irradiance), scaled);
         let sun_azimuth = DVec3::new(toward_sun.x, 0.0, toward_sun.z).normalize_or(DVec3::NEG_Z);
         Self { toward_sun, sun_azimuth, sun_irradiance, horizon, sky, ground }
     }
@@ -142,8 +124,41 @@ struct Air {
 }
 
 impl Air {
-    /// Radiance along a line of sight without and only with the sunlight that dust scattered once, the latter over dust's
-    /// phase function. With the sky's irradiance of the ground, the line ends there; without, in space.
+    fn new(description: &SkyDescription) -> Self {
+        let cos_zenith = description.toward_sun().y.clamp(-1.0, 1.0);
+        let ground_albedo = spectrum::reflectance(description.ground_albedo.channels());
+        let atmosphere = Atmosphere::new(description.turbidity);
+        let multiple = MultipleScattering::new(&atmosphere, &ground_albedo, cos_zenith.acos());
+        let sun = DVec3::new((1.0 - cos_zenith * cos_zenith).sqrt(), cos_zenith, 0.0);
+        Self { atmosphere, multiple, sun, ground_albedo }
+    }
+
+    /// What is seen at elevations by a parameter from 0 to 1, each at azimuths from the sun's to the opposite
+    /// one.
+    fn table(
+        &self,
+        radius: f64,
+        elevations: usize,
+        elevation_at: impl Fn(f64) -> f64,
+        sky_irradiance: Option<&Spectrum>,
+        to_rgb: impl Fn(&Spectrum) -> DVec3,
+    ) -> Vec<Sighted> {
+        let steps = if sky_irradiance.is_some() { STEPS_TO_GROUND } else { STEPS };
+        let mut table = Vec::with_capacity(elevations * AZIMUTHS);
+        for i in 0..elevations {
+            let elevation = elevation_at(i as f64 / (elevations - 1) as f64);
+            for j in 0..AZIMUTHS {
+                let azimuth = PI * j as f64 / (AZIMUTHS - 1) as f64;
+                let (radiance, dust) = self.line_of_sight(radius, elevation, azimuth, sky_irradiance, steps);
+                table.push(Sighted { radiance: to_rgb(&radiance), dust: to_rgb(&dust) });
+            }
+        }
+        table
+    }
+
+    /// Radiance along a line of sight without and only with the sunlight that dust scattered once, the latter
+    /// over dust's phase function. With the sky's irradiance of the ground, the line ends there; without, in
+    /// space.
     fn line_of_sight(
         &self,
         radius: f64,
@@ -216,5 +231,66 @@ impl Air {
             }
         }
         irradiance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finer_steps_along_the_line_of_sight_change_little() {
+        for sun_elevation in [3.0, 40.0] {
+            let description =
+                SkyDescription { sun_elevation: Some(sun_elevation), ..SkyDescription::default() };
+            let air = Air::new(&description);
+            let radius = EARTH_RADIUS + description.altitude;
+            let light_of_ground = air.sky_irradiance();
+            for (elevation, ground, steps) in [
+                (0.005, None, STEPS),
+                (0.1, None, STEPS),
+                (1.2, None, STEPS),
+                (-0.01, Some(&light_of_ground), STEPS_TO_GROUND),
+                (-0.3, Some(&light_of_ground), STEPS_TO_GROUND),
+            ] {
+                for azimuth in [0.0, 1.5, 3.0] {
+                    let (coarse, coarse_dust) = air.line_of_sight(radius, elevation, azimuth, ground, steps);
+                    let (fine, fine_dust) = air.line_of_sight(radius, elevation, azimuth, ground, 1_000);
+                    for i in 0..COUNT {
+                        let total = |radiance: &Spectrum, dust: &Spectrum| radiance[i] + 0.1 * dust[i];
+                        let ratio = total(&coarse, &coarse_dust) / total(&fine, &fine_dust);
+                        assert!(
+                            (ratio - 1.0).abs() < 0.02,
+                            "{sun_elevation} {elevation} {azimuth} {i}: {ratio}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn between_the_lines_of_the_table_the_sky_is_what_a_line_there_sees() {
+        for sun_elevation in [3.0, 40.0] {
+            let description = SkyDescription {
+                sun_elevation: Some(sun_elevation),
+                sun_azimuth: Some(0.0),
+                ..Default::default()
+            };
+            let (sky, air, to_rgb) = (Sky::new(&description), Air::new(&description), ToRgb::new());
+            let radius = EARTH_RADIUS + description.altitude;
+            for i in 0..500 {
+                let elevation = FRAC_PI_2 * (f64::from(i) / 500.0).powi(2);
+                let azimuth = PI * (f64::from(i) * 0.618_034 % 1.0);
+                let (radiance, dust) = air.line_of_sight(radius, elevation, azimuth, None, STEPS);
+                // The sun is in the north (-z), azimuths count through east (+x).
+                let (sin, cos) = elevation.sin_cos();
+                let direction = DVec3::new(cos * azimuth.sin(), sin, -cos * azimuth.cos());
+                let phase = dust_phase(direction.dot(description.toward_sun()));
+                let expected = to_rgb.convert(&spectrum::each(|i| radiance[i] + phase * dust[i]));
+                let error = (sky.radiance(direction) - expected).abs().max_element() / expected.max_element();
+                assert!(error < 0.02, "{sun_elevation} {elevation} {azimuth}: {error}");
+            }
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Holds a tree of values against the JSON schema and says everything that is wrong, in words.
 //!
-//! Only what [`json_schema`](super::json_schema) generates is understood: objects with known properties, arrays,
-//! numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, and `anyOf` of
-//! different kinds of values.
+//! Only what [`json_schema`](super::json_schema) generates is understood: objects with known properties,
+//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, and
+//! `anyOf` of different kinds of values.
 
 use serde_json::Value as Schema;
 

@@ -51,8 +51,8 @@ impl SceneDocument {
         Ok(document)
     }
 
-    /// Parses the text of a scene file; `name` stands for it in messages. Files it mentions are relative to the
-    /// working folder.
+    /// Parses the text of a scene file; `name` stands for it in messages. Files it mentions are relative to
+    /// the working folder.
     pub fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
         let text: Arc<str> = Arc::from(text);
         let place =
@@ -71,8 +71,8 @@ impl SceneDocument {
 
     /// Changes one value: `camera.vertical_fov=30`, `volume.0.mu_t=3`, `render.integrator=reference`.
     ///
-    /// Tables on the way are made; the entries of arrays count from 0, and the one after the last can be made. A
-    /// value that is not TOML is taken as a string.
+    /// Tables on the way are made; the entries of arrays count from 0, and the one after the last can be
+    /// made. A value that is not TOML is taken as a string.
     pub fn set(&mut self, assignment: &str) -> Result<(), SceneError> {
         let option = format!("--set {assignment}");
         let text = Arc::new(NamedSource::new(option.clone(), Arc::from(assignment)));

@@ -1,8 +1,8 @@
 //! The native scene file: TOML text to a checked [`SceneDescription`](crate::SceneDescription) and back.
 //!
-//! The way of the data: text → tree of values that know where they stand ([`tree`]) → `--set` options change it
-//! ([`document`]) → it is held against the JSON schema ([`conformance`]), all problems at once → serde makes the
-//! description → its rules are checked. [`print`] is the way back.
+//! The way of the data: text → tree of values that know where they stand ([`tree`]) → `--set` options change
+//! it ([`document`]) → it is held against the JSON schema ([`conformance`]), all problems at once → serde
+//! makes the description → its rules are checked. [`print`] is the way back.
 
 mod conformance;
 mod document;

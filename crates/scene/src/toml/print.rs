@@ -1,4 +1,5 @@
-//! A description as the scene file a person would have written: tables at the top, everything below in one line.
+//! A description as the scene file a person would have written: tables at the top, everything below in one
+//! line.
 
 use std::fmt::Write as _;
 

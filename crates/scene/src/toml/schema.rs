@@ -1,7 +1,7 @@
 //! The JSON schema of scene files, generated from the description's types.
 //!
-//! It serves editors (completion and checks while typing) and this crate alike: a file is held against it before
-//! serde sees the values.
+//! It serves editors (completion and checks while typing) and this crate alike: a file is held against it
+//! before serde sees the values.
 
 use schemars::generate::SchemaSettings;
 use serde_json::Value;

@@ -1,0 +1,312 @@
+//! Any description, printed, reads back identically; and scenes that render the same have the same hash.
+
+use std::fs;
+
+use proptest::option::of;
+use proptest::prelude::*;
+use tyndall_scene::description::*;
+use tyndall_scene::{SceneDescription, SceneDocument, scene_hash};
+
+/// Whole numbers, decimals and numbers with all their digits.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        (-1_000_i32..1_000).prop_map(f64::from),
+        (-1_000_i32..1_000).prop_map(|n| f64::from(n) / 100.0),
+        -1e3..1e3,
+        -1e29..1e29,
+        Just(-0.0),
+        Just(1e-300),
+    ]
+}
+
+fn within(least: f64, most: f64) -> impl Strategy<Value = f64> {
+    prop_oneof![least..=most, Just(least), Just(most)]
+}
+
+fn positive() -> impl Strategy<Value = f64> {
+    prop_oneof![1e-9..1e9, (1_u32..100).prop_map(f64::from)]
+}
+
+fn vector() -> impl Strategy<Value = [f64; 3]> {
+    [number(), number(), number()]
+}
+
+fn direction() -> impl Strategy<Value = [f64; 3]> {
+    [-1.0..1.0, -1.0..1.0, 0.1..1.0]
+}
+
+fn rgb(least: f64, most: f64) -> impl Strategy<Value = Rgb> {
+    let value = move || within(least, most);
+    prop_oneof![value().prop_map(Rgb::Grey), [value(), value(), value()].prop_map(Rgb::Channels)]
+}
+
+fn words() -> impl Strategy<Value = String> {
+    "[a-zA-Z0-9_ ./\\\\\"'#=µ\\n\\t\u{7f}\u{0}-]{0,20}"
+}
+
+fn camera() -> impl Strategy<Value = CameraDescription> {
+    (vector(), direction(), of(positive()), within(0.5, 179.0), any::<bool>()).prop_map(
+        |(position, direction, focus_distance, vertical_fov, is_lens)| CameraDescription {
+            position,
+            target: None,
+            direction: Some(direction),
+            up: [0.1, 2.0, -0.3],
+            vertical_fov,
+            aperture_radius: if is_lens && focus_distance.is_some() { 0.25 } else { 0.0 },
+            focus_distance,
+        },
+    )
+}
+
+fn film_and_render() -> impl Strategy<Value = (FilmDescription, RenderDescription)> {
+    let layers = of(proptest::sample::subsequence(
+        vec![Layer::StandardError, Layer::SampleCount, Layer::Depth, Layer::Albedo, Layer::Multiple],
+        0..5,
+    ));
+    let film = ([1_u32..=65536, 1..=65536], within(-100.0, 100.0), layers)
+        .prop_map(|(resolution, exposure, layers)| FilmDescription { resolution, exposure, layers });
+    let integrator = prop_oneof![Just(Integrator::Fast), Just(Integrator::Reference)];
+    let render = (1_u32.., any::<u32>(), of(any::<u32>()), integrator).prop_map(
+        |(spp, seed, max_depth, integrator)| RenderDescription { spp, seed, max_depth, integrator },
+    );
+    (film, render)
+}
+
+fn medium() -> impl Strategy<Value = MediumDescription> {
+    let coefficients = prop_oneof![
+        (positive(), rgb(0.0, 1.0)).prop_map(|(mu_t, albedo)| MediumDescription {
+            mu_t: Some(mu_t),
+            albedo: Some(albedo),
+            ..Default::default()
+        }),
+        (positive(), rgb(0.0, 1.0)).prop_map(|(path, albedo)| MediumDescription {
+            mean_free_path: Some(path),
+            albedo: Some(albedo),
+            ..Default::default()
+        }),
+        (positive(), positive()).prop_map(|(mu_a, mu_s)| MediumDescription {
+            mu_a: Some(Rgb::Grey(mu_a)),
+            mu_s: Some(Rgb::Channels([mu_s; 3])),
+            ..Default::default()
+        }),
+    ];
+    let phase = prop_oneof![
+        Just(PhaseDescription::Isotropic),
+        within(-0.999, 0.999).prop_map(|g| PhaseDescription::Hg { g })
+    ];
+    (coefficients, phase, of(rgb(0.0, 1e6))).prop_map(|(medium, phase, emission)| MediumDescription {
+        phase,
+        emission,
+        ..medium
+    })
+}
+
+fn transform() -> impl Strategy<Value = TransformDescription> {
+    let scale = prop_oneof![
+        positive().prop_map(Scale::Uniform),
+        [positive(), positive(), positive()].prop_map(Scale::PerAxis)
+    ];
+    let matrix = [1.0, 0.5, 0.0, 3.0, 0.0, 2.0, 0.25, -1.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    prop_oneof![
+        (of(scale), of(vector()), of(vector())).prop_map(|(scale, rotate, translate)| TransformDescription {
+            scale,
+            rotate,
+            translate,
+            matrix: None
+        }),
+        Just(TransformDescription { matrix: Some(matrix), ..Default::default() }),
+    ]
+}
+
+fn volume() -> impl Strategy<Value = VolumeDescription> {
+    let source = prop_oneof![
+        (words(), of(words())).prop_map(|(file, grid)| VolumeDescription {
+            file: Some(file),
+            grid,
+            values: Some(GridMeaning::SignedDistance),
+            raw_shape: Some([3, 4, 5]),
+            raw_type: Some(RawType::F16),
+            storage: Some(Storage::F32),
+            ..Default::default()
+        }),
+        (vector(), positive()).prop_map(|(center, radius)| VolumeDescription {
+            sphere: Some(SphereShape { center, radius }),
+            ..Default::default()
+        }),
+        positive().prop_map(|size| VolumeDescription {
+            cuboid: Some(BoxShape { min: [-size, -1.0, 0.0], max: [size, 1.0, size] }),
+            ..Default::default()
+        }),
+        positive().prop_map(|top| VolumeDescription {
+            slab: Some(SlabShape { bottom: 0.0, top }),
+            ..Default::default()
+        }),
+        (any::<u32>(), 8_u32..=2048, vector(), positive()).prop_map(|(seed, resolution, center, size)| {
+            let cumulus = ProceduralDescription::Cumulus { seed, resolution, center, size };
+            VolumeDescription { procedural: Some(cumulus), ..Default::default() }
+        }),
+    ];
+    (source, of(words()), of(transform()), medium())
+        .prop_map(|(volume, name, transform, medium)| VolumeDescription { name, transform, medium, ..volume })
+}
+
+fn light() -> impl Strategy<Value = LightDescription> {
+    let sky = (of(within(-6.0, 90.0)), of(number()), within(1.0, 20.0), rgb(0.0, 1.0), any::<bool>())
+        .prop_map(|(sun_elevation, sun_azimuth, turbidity, ground_albedo, sun)| SkyDescription {
+            sun_elevation,
+            sun_azimuth,
+            turbidity,
+            ground_albedo,
+            sun,
+            ..Default::default()
+        });
+    prop_oneof![
+        rgb(0.0, 1e9).prop_map(|radiance| LightDescription::Constant(ConstantLightDescription { radiance })),
+        (words(), number(), positive()).prop_map(|(file, rotation, scale)| {
+            let filter = ImageFilter::Nearest;
+            LightDescription::Image(ImageLightDescription { file, rotation, scale, filter })
+        }),
+        sky.prop_map(LightDescription::Sky),
+        (direction(), rgb(0.0, 1e9), within(1e-3, 90.0)).prop_map(
+            |(direction, irradiance, angular_diameter)| {
+                LightDescription::Sun(SunLightDescription { direction, irradiance, angular_diameter })
+            }
+        ),
+        (direction(), rgb(0.0, 1e9)).prop_map(|(direction, irradiance)| {
+            LightDescription::Distant(DistantLightDescription { direction, irradiance })
+        }),
+        (vector(), rgb(0.0, 1e9)).prop_map(|(position, intensity)| {
+            LightDescription::Point(PointLightDescription { position, intensity })
+        }),
+    ]
+}
+
+fn scene() -> impl Strategy<Value = SceneDescription> {
+    (
+        words(),
+        camera(),
+        film_and_render(),
+        of(medium()),
+        proptest::collection::vec(volume(), 0..3),
+        proptest::collection::vec(light(), 0..3),
+    )
+        .prop_map(|(unit, camera, (film, render), medium, volumes, lights)| SceneDescription {
+            unit,
+            camera,
+            film,
+            render,
+            medium,
+            volumes,
+            lights,
+        })
+}
+
+fn read(text: &str) -> SceneDescription {
+    match SceneDocument::parse("printed.toml", text).and_then(|document| document.description()) {
+        Ok(description) => description,
+        Err(error) => panic!("{error}\n{text}"),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
+
+    #[test]
+    fn what_is_printed_reads_back_identically(description in scene()) {
+        let text = description.to_toml();
+        let back = read(&text);
+        prop_assert_eq!(&back, &description, "{}", text);
+        prop_assert_eq!(back.to_toml(), text);
+    }
+
+    #[test]
+    fn no_text_makes_reading_panic(text in "[\\[\\]{}=.,\"'a-z0-9\\n #-]{0,60}", cut in 0_usize..400, with in any::<char>()) {
+        let _ = SceneDocument::parse("scene.toml", &text).and_then(|document| document.description());
+        // And a sound scene with one character changed.
+        let sound = EXAMPLE;
+        if let Some((at, old)) = sound.char_indices().nth(cut % sound.chars().count()) {
+            let changed = format!("{}{with}{}", &sound[..at], &sound[at + old.len_utf8()..]);
+            if let Err(error) = SceneDocument::parse("scene.toml", &changed).and_then(|document| document.description()) {
+                prop_assert!(!error.to_string().contains('\n'), "{}", error);
+            }
+        }
+    }
+}
+
+const EXAMPLE: &str = r#"unit = "m"
+
+[camera]
+position = [0, 1.5, 5]
+target = [0, 0, 0]
+up = [0, 1, 0]
+vertical_fov = 40
+
+[film]
+resolution = [1280, 720]
+exposure = 0
+
+[render]
+spp = 64
+seed = 0
+integrator = "fast"
+
+[[volume]]
+file = "cloud.vdb"
+transform = { scale = 0.01, translate = [0, 0.5, 0] }
+mu_t = 8
+albedo = [0.99, 0.98, 0.97]
+phase = { type = "hg", g = 0.85 }
+
+[[light]]
+type = "constant"
+radiance = 1
+"#;
+
+#[test]
+fn a_printed_scene_looks_as_a_person_would_write_it() {
+    assert_eq!(read(EXAMPLE).to_toml(), EXAMPLE);
+}
+
+#[test]
+fn the_hash_tells_scenes_apart_that_differ_in_what_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("cloud.vdb"), "voxels").unwrap();
+    fs::write(folder.path().join("copy.vdb"), "voxels").unwrap();
+    fs::write(folder.path().join("other.vdb"), "other voxels").unwrap();
+    let hash = |option: &str| {
+        let mut document = SceneDocument::parse("scene.toml", EXAMPLE).unwrap();
+        if !option.is_empty() {
+            document.set(option).unwrap();
+        }
+        scene_hash(&document.description().unwrap(), folder.path()).unwrap()
+    };
+    let plain = hash("");
+    for same in [
+        "volume.0.file=copy.vdb",
+        "volume.0.name=cloud",
+        "render.spp=128",
+        "render.seed=3",
+        "film.exposure=2",
+        "camera.vertical_fov=40.0",
+    ] {
+        assert_eq!(hash(same), plain, "{same}");
+    }
+    for different in [
+        "volume.0.file=other.vdb",
+        "volume.0.mu_t=8.0000001",
+        "render.max_depth=3",
+        "film.resolution=[1280, 721]",
+        "light.0.radiance=2",
+        "camera.position=[0, 1.5, 6]",
+    ] {
+        assert_ne!(hash(different), plain, "{different}");
+    }
+    // The hash is part of files that are merged later: it must not change by accident.
+    assert_eq!(plain.to_string().len(), 32);
+}
+
+#[test]
+fn the_hash_names_a_file_that_is_not_there() {
+    let error = scene_hash(&read(EXAMPLE), std::path::Path::new("no/such/folder")).unwrap_err().to_string();
+    assert!(error.starts_with("no/such/folder/cloud.vdb: "), "{error}");
+}
