@@ -1,9 +1,11 @@
 //! The `tyndall` command: pictures of clouds, smoke, fire, fog, milk and air, with their error.
 
 mod diff;
+mod inspect;
 mod merge;
 mod output;
 mod render;
+mod volume_input;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
@@ -28,6 +30,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::Args>),
+    Inspect(inspect::Args),
     Merge(merge::Args),
     Diff(diff::Args),
     /// Print a completion script for a shell
@@ -62,6 +65,7 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
     match command {
         None => return render::run(render::Args::default_scene()),
         Some(Command::Render(args)) => return render::run(*args),
+        Some(Command::Inspect(args)) => inspect::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,
         Some(Command::Diff(args)) => diff::run(args)?,
         Some(Command::Completions { shell }) => {

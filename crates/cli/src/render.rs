@@ -277,11 +277,14 @@ fn report(picture: &Accumulation, outputs: &[Output], end: &Done) {
 
 fn parse_samples(text: &str) -> Result<Range<u64>, String> {
     let range = text.split_once("..").and_then(|(start, end)| Some(start.parse().ok()?..end.parse().ok()?));
-    range.filter(|range: &Range<u64>| range.start < range.end).ok_or("write A..B with A < B, such as 0..64".into())
+    range
+        .filter(|range: &Range<u64>| range.start < range.end)
+        .ok_or("write A..B with A < B, such as 0..64".into())
 }
 
 fn parse_resolution(text: &str) -> Result<[u32; 2], String> {
-    let size = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    let size =
+        text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
     size.filter(|size| size.iter().all(|edge| (1..=65536).contains(edge)))
         .ok_or("write WIDTHxHEIGHT, such as 1280x720".into())
 }

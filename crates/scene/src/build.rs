@@ -157,7 +157,7 @@ fn read_grid(
 }
 
 /// The grid that is a density by its name, by its class, or at least by its type.
-pub(crate) fn choose_density(grids: Vec<Grid>) -> Option<Grid> {
+pub fn choose_density(grids: Vec<Grid>) -> Option<Grid> {
     let rank = |grid: &Grid| {
         let name = grid.name.to_ascii_lowercase();
         let by_name = match name.as_str() {

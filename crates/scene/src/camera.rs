@@ -8,13 +8,20 @@ use glam::DVec3;
 
 use crate::description::CameraDescription;
 
-/// A half-line; `direction` is of unit length.
+/// A half-line; `direction` is of unit length, except in the local coordinates of a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
     /// Where it begins.
     pub origin: DVec3,
     /// Where it goes.
     pub direction: DVec3,
+}
+
+impl Ray {
+    /// The point at the distance `t`.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
 }
 
 /// A camera ready to make rays.

@@ -17,7 +17,7 @@ mod ready;
 pub mod sky;
 mod toml;
 
-pub use self::build::{BuiltScene, build};
+pub use self::build::{BuiltScene, build, choose_density};
 pub use self::camera::{Camera, Ray};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};

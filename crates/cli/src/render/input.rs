@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use miette::miette;
-use tyndall_scene::{SceneDescription, SceneDocument};
+use glam::DVec3;
+use miette::{IntoDiagnostic, miette};
+use tyndall_scene::description::VolumeSummary;
+use tyndall_scene::{SceneDescription, SceneDocument, choose_density};
+use tyndall_volumes::{Grid, ReadRequest};
 
 use crate::output::Output;
 
@@ -27,7 +30,10 @@ const DEFAULT_SCENE: &str = include_str!("../../../../scenes/cloud.toml");
 impl Input {
     /// A picture to work with and one to look at, in the working folder.
     pub fn default_outputs(&self) -> Vec<Output> {
-        [".exr", ".png"].iter().filter_map(|extension| format!("{}{extension}", self.stem).parse().ok()).collect()
+        [".exr", ".png"]
+            .iter()
+            .filter_map(|extension| format!("{}{extension}", self.stem).parse().ok())
+            .collect()
     }
 }
 
@@ -70,4 +76,63 @@ fn from_document(
     // Comments survive as long as nothing is changed.
     let text = text.filter(|_| overrides.is_empty()).map_or_else(|| description.to_toml(), str::to_owned);
     Ok(Input { description, text, folder, notes: Vec::new(), stem })
+}
+
+/// The scene of a bare volume, made up from its data.
+fn from_volume(path: &Path, overrides: &[String], stem: String) -> miette::Result<Input> {
+    let file = tyndall_volumes::read(path, &ReadRequest::default()).into_diagnostic()?;
+    let mut notes: Vec<String> =
+        file.skipped.iter().map(|(name, why)| format!("{}: grid `{name}`: {why}", path.display())).collect();
+    let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
+    let Some(grid) = choose_density(file.grids) else {
+        return Err(miette!("{}: has no scalar grid to render; it has {}", path.display(), names.join(", ")));
+    };
+    if names.len() > 1 {
+        notes.push(format!("of the grids {} `{}` is rendered", names.join(", "), grid.name));
+    }
+    let Some(summary) = summary(&grid) else {
+        return Err(miette!(
+            "{}: grid `{}` has no active voxels: there is nothing to see",
+            path.display(),
+            grid.name
+        ));
+    };
+    drop(grid);
+    let automatic = SceneDescription::for_volume(&path.display().to_string(), &summary);
+    notes.push("light, camera and density are chosen from the data; --print-scene shows them".into());
+    let text = automatic.to_toml();
+    let document = SceneDocument::parse("the scene made up for the volume", &text)?;
+    let mut input = from_document(document, overrides, Some(&text), PathBuf::new(), stem)?;
+    input.notes = notes;
+    Ok(input)
+}
+
+/// What the made-up scene depends on; `None` if no voxel is active.
+fn summary(grid: &Grid) -> Option<VolumeSummary> {
+    let statistics = grid.values.statistics();
+    let [low, high] = statistics.active_bbox?;
+    let to_world = grid.index_to_world;
+    let corner = |i: usize| {
+        let face = |axis: usize| match i >> axis & 1 {
+            0 => f64::from(low[axis]) - 0.5,
+            _ => f64::from(high[axis]) + 0.5,
+        };
+        to_world.transform_point3(DVec3::new(face(0), face(1), face(2)))
+    };
+    let voxels: f64 = (0..3).map(|a| f64::from(high[a]) - f64::from(low[a]) + 1.0).product();
+    let count = statistics.active_voxels as f64;
+    let name = grid.name.to_ascii_lowercase();
+    Some(VolumeSummary {
+        grid_name: grid.name.clone(),
+        world_box: [
+            (1..8).fold(corner(0), |least, i| least.min(corner(i))),
+            (1..8).fold(corner(0), |greatest, i| greatest.max(corner(i))),
+        ],
+        mean: statistics.sum.first()? / count,
+        max: *statistics.max.first()?,
+        active_fraction: (count / voxels).min(1.0),
+        voxel_size: to_world.matrix3.determinant().abs().cbrt(),
+        class: grid.class,
+        value_is_temperature: name.contains("temperature"),
+    })
 }

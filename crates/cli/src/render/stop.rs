@@ -78,7 +78,8 @@ impl Plan {
 
     fn error_is_reached(&self, film: &Film) -> bool {
         let enough = film.complete().count() >= LEAST_SAMPLES_FOR_ERROR;
-        enough && self.error.is_some_and(|goal| film.median_relative_error().is_some_and(|error| error <= goal))
+        enough
+            && self.error.is_some_and(|goal| film.median_relative_error().is_some_and(|error| error <= goal))
     }
 }
 
