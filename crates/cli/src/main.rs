@@ -1,5 +1,6 @@
 //! The `tyndall` command.
 
+mod convert;
 mod diff;
 mod inspect;
 mod merge;
@@ -12,6 +13,7 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(version)]
 enum Command {
+    Convert(convert::Args),
     Diff(diff::Args),
     Inspect(inspect::Args),
     Merge(merge::Args),
@@ -19,6 +21,7 @@ enum Command {
 
 fn main() -> miette::Result<()> {
     match Command::parse() {
+        Command::Convert(args) => convert::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Inspect(args) => inspect::run(args),
         Command::Merge(args) => merge::run(args),
