@@ -79,7 +79,7 @@ pub(crate) struct OpenPass {
 /// The sums of a picture.
 ///
 /// Memory per pixel: 128 bytes, and for each layer that is kept and has seen anything but zero 16 (depth), 24
-/// (albedo) or 48 (emission, single, multiple) more: 242 MB at 1280x720 with all layers but emission.
+/// (albedo) or 48 (emission, single, multiple) more: 243 MB at 1280x720 with all layers but emission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Film {
     pub(crate) width: u32,
