@@ -77,6 +77,9 @@ pub(crate) struct OpenPass {
 }
 
 /// The sums of a picture.
+///
+/// Memory per pixel: 128 bytes, and for each layer that is kept and has seen anything but zero 16 (depth), 24
+/// (albedo) or 48 (emission, single, multiple) more: 243 MB at 1280x720 with all layers but emission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Film {
     pub(crate) width: u32,
@@ -208,7 +211,7 @@ impl Film {
             let tile_start = row as usize * tile.rect.width as usize;
             self.sums.add_run(start, &tile.sums, tile_start, tile.rect.width as usize);
         }
-        self.rejected += tile.rejected;
+        self.rejected = self.rejected.saturating_add(tile.rejected);
     }
 
     /// Ends the pass: every tile must hold all samples from its start up to, not including, `end`.

@@ -1,0 +1,70 @@
+//! `tyndall convert`: a volume file in another format.
+
+use std::path::PathBuf;
+
+use miette::{bail, miette};
+use tyndall_volumes::{Codec, Format, WriteOptions};
+
+use crate::volume_input::{self, RawArgs};
+
+/// Write a volume in another format, chosen by the extension
+///
+/// .vdb and .nvdb hold any number of sparse grids as they are. The others hold one dense array: the box around the
+/// active voxels of one grid, as 32-bit floats.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  tyndall convert smoke.nvdb smoke.vdb
+  tyndall convert fire.vdb fire_half.vdb --grid density --grid temperature --half --codec zip
+  tyndall convert fire.vdb density.npy --grid density
+  tyndall convert head.raw head.vdb --raw-shape 256x256x109 --raw-type uint8")]
+pub struct Args {
+    /// A volume: .vdb .nvdb .vol .npy .nii .nii.gz .raw
+    input: PathBuf,
+    /// Where to write it, with one of these extensions
+    output: PathBuf,
+    /// Only this grid; may be given several times
+    #[arg(long, value_name = "NAME")]
+    grid: Vec<String>,
+    /// Round values to 16-bit floats (.vdb)
+    #[arg(long)]
+    half: bool,
+    /// Compression of .vdb and .nvdb; default blosc
+    #[arg(long, value_enum)]
+    codec: Option<CodecName>,
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum CodecName {
+    /// Largest, fastest
+    None,
+    /// Smallest, slowest
+    Zip,
+    /// LZ4 of shuffled bytes: nearly as small, fast
+    Blosc,
+}
+
+/// Reads, writes, and says what was written.
+pub fn run(args: Args) -> miette::Result<()> {
+    let sparse = matches!(Format::from_extension(&args.output), Some(Format::OpenVdb | Format::NanoVdb));
+    if args.codec.is_some() && !sparse {
+        bail!("{}: --codec is for .vdb and .nvdb; leave it out", args.output.display());
+    }
+    let codec = match args.codec {
+        Some(CodecName::None) => Codec::None,
+        Some(CodecName::Zip) => Codec::Zip,
+        Some(CodecName::Blosc) => Codec::Blosc,
+        None => Codec::default(),
+    };
+    let file = volume_input::read(&args.input, &args.grid, &args.raw)?;
+    for (name, why) in &file.skipped {
+        eprintln!("grid `{name}` is left out: {why}");
+    }
+    let written = tyndall_volumes::write(&args.output, &file.grids, &WriteOptions { codec, half: args.half })
+        .map_err(|error| miette!("{error}"))?;
+    let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
+    println!("wrote {} with {}", written.display(), names.join(", "));
+    Ok(())
+}
