@@ -1,5 +1,6 @@
 //! The `tyndall` command: pictures of clouds, smoke, fire, fog, milk and air, with their error.
 
+mod convert;
 mod diff;
 mod inspect;
 mod merge;
@@ -31,6 +32,7 @@ struct Cli {
 enum Command {
     Render(Box<render::Args>),
     Inspect(inspect::Args),
+    Convert(convert::Args),
     Merge(merge::Args),
     Diff(diff::Args),
     /// Print a completion script for a shell
@@ -66,6 +68,7 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
         None => return render::run(render::Args::default_scene()),
         Some(Command::Render(args)) => return render::run(*args),
         Some(Command::Inspect(args)) => inspect::run(args)?,
+        Some(Command::Convert(args)) => convert::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,
         Some(Command::Diff(args)) => diff::run(args)?,
         Some(Command::Completions { shell }) => {

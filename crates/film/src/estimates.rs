@@ -70,17 +70,21 @@ impl Film {
     ///
     /// The error of luminance Y is taken as Σ w·SE over the channels, which is exact where the channels vary
     /// together (as they do where a medium is grey) and otherwise too large. Black pixels have no relative error
-    /// and are left out; so are pixels that are known exactly (plain sky behind a cloud, say), which would
-    /// otherwise hide the noise of the rest. Infinite while most pixels have fewer than two samples.
+    /// and are left out. So are the pixels that no path met a medium in, as long as any did: sky behind a cloud is
+    /// known at once and would hide the noise of the rest. Infinite while most pixels have fewer than two samples.
     pub fn median_relative_error(&self) -> Option<f64> {
         let mut lit = false;
         let mut errors = Vec::new();
+        let any_hit = self.sums.pixels.iter().any(|pixel| pixel.hits > 0);
         self.for_each_pixel(|index, n| {
+            if any_hit && self.sums.pixels[index].hits == 0 {
+                return;
+            }
             let (mean, error) = (self.pixel_mean(index, n), self.pixel_standard_error(index, n));
             let luminance = (0..3).map(|c| LUMINANCE[c] * mean[c]).sum::<f64>().abs();
             let error: f64 = (0..3).map(|c| LUMINANCE[c] * error[c]).sum();
             lit |= luminance > 0.0;
-            if luminance > 0.0 && error > 0.0 {
+            if luminance > 0.0 {
                 errors.push(error / luminance);
             }
         });
@@ -270,9 +274,9 @@ mod tests {
     }
 
     #[test]
-    fn the_median_relative_error_leaves_out_black_and_exact_pixels() {
+    fn the_median_relative_error_leaves_out_black_pixels_and_plain_background() {
         let (black, exact) = ([0.0; 4].map(grey), [1.0; 4].map(grey));
-        let noisy = [1.0, 2.0, 3.0, 4.0].map(grey);
+        let noisy = [1.0, 2.0, 3.0, 4.0].map(|x| Sample { hit: true, ..grey(x) });
         let expected = (5.0f64 / 3.0 / 4.0).sqrt() / 2.5;
         let error = film(&[&black, &exact, &noisy, &exact, &exact]).median_relative_error().unwrap();
         assert!((error - expected).abs() < 1e-12);

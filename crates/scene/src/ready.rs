@@ -103,7 +103,9 @@ mod tests {
         let lights = vec![light(1.0), constant(), light(3.0)];
         let light_probabilities = light_probabilities(&lights, 2.0);
         assert_eq!(light_probabilities, [0.25, 0.0, 0.75]);
-        let camera = Camera::new(&Default::default(), [1, 1]);
+        let camera = "camera = { position = [0, 0, 1], target = [0, 0, 0] }";
+        let description = crate::SceneDocument::parse("test", camera).unwrap().description().unwrap();
+        let camera = Camera::new(&description.camera, [1, 1]);
         let scene = Scene {
             camera,
             resolution: [1, 1],

@@ -124,7 +124,8 @@ fn step_group(rays: &mut Rays, base: usize, volumes: &[FastVolume], tentative: &
         let exit = smaller(exit, end[l]);
         let m = mu_t[l] * if max[l] > 0.0 { max[l] } else { 0.0 };
         let optical_thickness = m * (exit - t[l]);
-        let active = t[l] < end[l];
+        // Not `t < end`: a null collision may stand at the very end.
+        let active = end[l] > 0.0;
         let hit = tau[l] < optical_thickness && active;
         let hit_t = smaller(t[l] + tau[l] / m, exit);
         next_t[l] = if hit { hit_t } else { exit };

@@ -24,7 +24,7 @@ pub(super) struct Rays {
     pub iz: [f32; POOL],
     /// Where the ray is.
     pub t: [f32; POOL],
-    /// Where it leaves the volume, or a nearer collision in another volume; a ray with `end <= t` rests.
+    /// Where it leaves the volume, or a nearer collision in another volume; 0 for a place without a ray.
     pub end: [f32; POOL],
     /// Optical thickness under the majorant up to the next tentative collision.
     pub tau: [f32; POOL],
