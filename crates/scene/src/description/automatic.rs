@@ -53,10 +53,13 @@ impl AutomaticScene {
 
 const OPTICAL_THICKNESS: f64 = 16.0;
 const ALBEDO: f64 = 0.99;
-const ASYMMETRY: f64 = 0.8;
+const ASYMMETRY: f64 = 0.5;
 /// Part of the picture's width or height that the box fills.
-const FILLED: f64 = 0.9;
-const VERTICAL_FOV: f64 = 40.0;
+const FILLED: f64 = 0.97;
+const VERTICAL_FOV: f64 = 30.0;
+/// Stops above the exposure that shows a white surface in full sun as white: a body that is partly shaded, before a
+/// deep blue sky, looks dull at 0.
+const EXPOSURE: f64 = 0.4;
 /// The sun stands in the east and the viewer south-east of the volume, so that light comes from the right and
 /// shapes it.
 const SUN: [f64; 2] = [35.0, 90.0];
@@ -66,7 +69,7 @@ const VIEWER: [f64; 2] = [-20.0, 150.0];
 impl SceneDescription {
     /// A scene that shows the grid of `summary` from `file`.
     pub fn for_volume(file: &str, summary: &VolumeSummary) -> AutomaticScene {
-        let film = FilmDescription::default();
+        let film = FilmDescription { exposure: EXPOSURE, ..FilmDescription::default() };
         let aspect = f64::from(film.resolution[0]) / f64::from(film.resolution[1]);
         let is_level_set = summary.class == GridClass::LevelSet;
         let description = Self {
@@ -267,7 +270,7 @@ mod tests {
                 let [x, y] = in_picture(offset);
                 greatest = greatest.max((x / edge[0]).abs()).max((y / low[1]).abs());
             }
-            assert!((0.88..0.92).contains(&greatest), "{size:?}: {greatest}");
+            assert!((0.95..=1.0).contains(&greatest), "{size:?}: {greatest}");
         }
     }
 

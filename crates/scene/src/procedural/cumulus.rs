@@ -8,6 +8,7 @@
 //! Positions are in the unit cube; y is up.
 
 use glam::{DAffine3, DVec3, UVec3, Vec3};
+use rayon::prelude::*;
 use tyndall_lanes::Random;
 use tyndall_volumes::{Grid, GridClass, GridValues, LEAF_VOXELS, Leaf, Tree};
 
@@ -28,8 +29,11 @@ pub fn cumulus(seed: u32, resolution: u32, center: DVec3, size: f64) -> Grid {
     let spheres = heap_of_spheres(seed);
     let leaves_along = resolution.div_ceil(8);
     let mut tree = Tree { background: 0.0, tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
-    for x in 0..leaves_along {
-        let slab = slab_of_leaves(&spheres, x, leaves_along, resolution, seed);
+    let slabs: Vec<_> = (0..leaves_along)
+        .into_par_iter()
+        .map(|x| slab_of_leaves(&spheres, x, leaves_along, resolution, seed))
+        .collect();
+    for slab in slabs {
         for (leaf, values) in slab {
             tree.leaves.push(leaf);
             tree.leaf_values.extend(values);
@@ -108,35 +112,25 @@ fn slab_of_leaves(
     resolution: u32,
     seed: u32,
 ) -> Vec<(Leaf, [f32; LEAF_VOXELS])> {
-    let voxel = 1.0 / resolution as f32;
-    let leaf_edge = 8.0 * voxel;
-    let reach = FRAY * 1.5;
-    let near =
-        |low: f32, high: f32, centre: f32, radius: f32| centre + radius > low && centre - radius < high;
-    let in_slab: Vec<Sphere> = spheres
-        .iter()
-        .copied()
-        .filter(|s| near(x as f32 * leaf_edge, (x + 1) as f32 * leaf_edge, s.centre.x, s.radius + reach))
-        .collect();
+    let leaf_edge = 8.0 / resolution as f32;
+    let half_diagonal = 0.87 * leaf_edge;
+    let reach = half_diagonal + 1.5 * FRAY;
+    let near = |s: &&Sphere, axis: usize, middle: f32| (s.centre[axis] - middle).abs() < s.radius + reach;
+    let middle = |i: u32| (i as f32 + 0.5) * leaf_edge;
+    let in_slab: Vec<Sphere> = spheres.iter().filter(|s| near(s, 0, middle(x))).copied().collect();
     let mut leaves = Vec::new();
-    for y in 0..leaves_along {
-        let in_row: Vec<Sphere> = in_slab
-            .iter()
-            .copied()
-            .filter(|s| near(y as f32 * leaf_edge, (y + 1) as f32 * leaf_edge, s.centre.y, s.radius + reach))
-            .collect();
+    for y in (0..leaves_along).filter(|&y| middle(y) > BASE - reach) {
+        let in_row: Vec<Sphere> = in_slab.iter().filter(|s| near(s, 1, middle(y))).copied().collect();
         for z in 0..leaves_along {
-            let corner = UVec3::new(x, y, z).as_vec3() * leaf_edge;
-            let middle = corner + 0.5 * leaf_edge;
-            let half_diagonal = leaf_edge * 0.87 + reach;
-            let here: Vec<Sphere> = in_row
-                .iter()
-                .copied()
-                .filter(|s| s.centre.distance_squared(middle) < (s.radius + half_diagonal).powi(2))
-                .collect();
-            if here.is_empty() || corner.y + leaf_edge < BASE - FRAY {
+            let centre = Vec3::new(middle(x), middle(y), middle(z));
+            let depth = |s: &Sphere| s.radius - s.centre.distance(centre);
+            let greatest = in_row.iter().map(depth).fold(f32::NEG_INFINITY, f32::max);
+            if greatest < -reach {
                 continue;
             }
+            // Any other sphere is nowhere in the leaf the one whose surface is farthest above.
+            let decisive = |s: &&Sphere| depth(s) >= greatest - 2.0 * half_diagonal;
+            let here: Vec<Sphere> = in_row.iter().filter(decisive).copied().collect();
             if let Some(values) = leaf_values(&here, UVec3::new(x, y, z) * 8, resolution, seed) {
                 let origin = [x, y, z].map(|i| 8 * i as i32);
                 leaves.push((Leaf { origin, active: active_mask(&values) }, values));

@@ -7,7 +7,7 @@ use glam::{IVec3, Vec3};
 
 /// Noise of mean 0 at `p`, within about ±1, with features of about unit size.
 pub(super) fn gradient_noise(p: Vec3, seed: u32) -> f32 {
-    let base = p.floor();
+    let base = floor(p);
     let f = p - base;
     let blend = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
     let cell = base.as_ivec3();
@@ -33,6 +33,12 @@ pub(super) fn fractal_noise(p: Vec3, octaves: u32, seed: u32) -> f32 {
         scaled = scaled * 2.0 + 17.3;
     }
     sum
+}
+
+/// Without the call that `f32::floor` is where the processor's rounding instruction cannot be assumed.
+fn floor(p: Vec3) -> Vec3 {
+    let toward_zero = p.as_ivec3().as_vec3();
+    toward_zero - Vec3::select(p.cmplt(toward_zero), Vec3::ONE, Vec3::ZERO)
 }
 
 /// One of the twelve directions to the edges of a cube.

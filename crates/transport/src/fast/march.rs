@@ -15,7 +15,7 @@ use tyndall_volumes::bricks::Bricks;
 const WIDTH: usize = 16;
 
 /// Weight below which a shadow ray plays roulette; survivors get this weight.
-const ROULETTE_WEIGHT: f32 = 0.25;
+const ROULETTE_WEIGHT: f32 = 0.2;
 
 /// How far, in voxels, a point is carried into the next cell: well above f32's resolution at the grid's far corner
 /// `max`. Inside that sliver the next cell's majorant is used for the last cell's values, which differ by the
