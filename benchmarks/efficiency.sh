@@ -50,7 +50,7 @@ measure() {
         }'
 }
 
-echo "# cpu: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -1), $(nproc 2>/dev/null || echo '?') cores"
+echo "# cpu: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -1), $(nproc 2>/dev/null || echo '?') cores, load $(cut -d' ' -f1 /proc/loadavg 2>/dev/null || echo '?')"
 echo "# $("$tyndall" --version), commit $(git -C "$here" rev-parse --short HEAD), $(rustc --version)${OPTIONS:+, options $OPTIONS}"
 echo "# scene spp seed seconds wall relmse relmse_trimmed efficiency efficiency_trimmed z_of_the_means"
 for seed in $(seq "$seeds"); do
@@ -59,5 +59,9 @@ for seed in $(seq "$seeds"); do
 done | tee "$folder/lines"
 awk '
     { n[$1]++; error[$1] += $6; seconds[$1] += $4 }
-    END { for (s in n) printf "# mean of %s: relmse %.5f, %.2f s, efficiency %.3g\n", s, error[s] / n[s], seconds[s] / n[s],
-        1 / ((error[s] / n[s] - (s ~ /^A/ ? 8.2e-4 : 1.2e-3)) * seconds[s] / n[s]) }' "$folder/lines"
+    END {
+        for (s in n) {
+            e = error[s] / n[s]; t = seconds[s] / n[s]; noise = s ~ /^A/ ? 8.2e-4 : 1.2e-3
+            printf "# mean of %s: relmse %.5f, %.2f s, efficiency %s\n", s, e, t, e > noise ? sprintf("%.3g", 1 / ((e - noise) * t)) : "-"
+        }
+    }' "$folder/lines"

@@ -25,7 +25,7 @@ for candidate in python3 /usr/bin/python3; do
 done
 
 echo "# full loads, $turns turns of $runs runs each"
-echo "# cpu: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -1), $(nproc 2>/dev/null || echo '?') cores"
+echo "# cpu: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -1), $(nproc 2>/dev/null || echo '?') cores, load $(cut -d' ' -f1 /proc/loadavg 2>/dev/null || echo '?')"
 echo "# tyndall-volumes: commit $(git -C "$here" rev-parse --short HEAD), $(rustc --version)"
 echo "# openvdb: ${version:-not found}"
 echo "# reader file runs least_ms median_ms active_voxels"
