@@ -62,6 +62,6 @@ awk '
     END {
         for (s in n) {
             e = error[s] / n[s]; t = seconds[s] / n[s]; noise = s ~ /^A/ ? 8.2e-4 : 1.2e-3
-            printf "# mean of %s: relmse %.5f, %.2f s, efficiency %s\n", s, e, t, e > noise ? sprintf("%.3g", 1 / ((e - noise) * t)) : "-"
+            printf "# mean of %s: relmse %.5f, %.2f s, efficiency %s\n", s, e, t, (e > noise ? sprintf("%.3g", 1 / ((e - noise) * t)) : "-")
         }
     }' "$folder/lines"
