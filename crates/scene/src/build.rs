@@ -1,6 +1,7 @@
 //! From a description to a scene ready to trace: volume files are read, grids chosen, everything put in its place.
 
 use glam::{DAffine3, DVec3};
+use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
 use tyndall_optics::PhaseFunction;
@@ -186,6 +187,7 @@ fn build_bricks(
         Some(meaning) => meaning == GridMeaning::SignedDistance,
         None => grid.class == GridClass::LevelSet,
     };
+    let has_negative = Cell::new(false);
     let bricks = if is_distance {
         if description.values.is_none() {
             notes.push(format!(
@@ -198,7 +200,13 @@ fn build_bricks(
         let voxel = grid.index_to_world.matrix3.determinant().abs().cbrt() as f32;
         BrickGrid::mapped(grid, storage, |distance| (0.5 - distance / voxel).clamp(0.0, 1.0))
     } else {
-        BrickGrid::new(grid, storage)
+        // Voxel by voxel: cut off after filtering, a single voxel drawn in place of the mixture of eight would have
+        // another mean than the mixture.
+        BrickGrid::mapped(grid, storage, |value| {
+            let negative = value < 0.0 && value.is_finite();
+            has_negative.set(has_negative.get() || negative);
+            if negative { 0.0 } else { value }
+        })
     };
     let bricks = bricks.map_err(|error| SceneError::file(path, error.to_string()))?;
     if bricks.non_finite() > 0 {
@@ -209,7 +217,7 @@ fn build_bricks(
             grid.name
         ));
     }
-    if bricks.bounds().min < 0.0 {
+    if has_negative.get() {
         notes.push(format!("{}: negative values of `{}` count as 0", path.display(), grid.name));
     }
     Ok(bricks)

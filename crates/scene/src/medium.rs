@@ -41,8 +41,8 @@ pub enum Density {
         /// y of the upper face.
         top: f64,
     },
-    /// The trilinearly filtered values of a grid; local coordinates are its index coordinates. Negative values
-    /// count as 0.
+    /// The trilinearly filtered values of a grid, none of whose voxels is negative; local coordinates are its index
+    /// coordinates.
     Grid(Arc<BrickGrid>),
 }
 

@@ -1,0 +1,13 @@
+//! Proof of the transport: what it computes against what is known without it.
+//!
+//! Every test is a statistical one with fixed seeds, so that it gives the same answer each time; the level at which it
+//! would fail by chance for other seeds is stated with each. Where both integrators can be asked, both are.
+
+mod agreement;
+mod estimators;
+mod rendering;
+mod same_bits;
+mod scenes;
+mod slab;
+mod statistics;
+mod white_furnace;

@@ -1,0 +1,27 @@
+//! Films of a scene by either integrator.
+
+use std::ops::Range;
+
+use tyndall_film::{Film, Layers};
+use tyndall_scene::Scene;
+use tyndall_scene::description::Integrator;
+use tyndall_transport::{Control, Outcome, RenderOptions, render_pass};
+
+pub const BOTH: [Integrator; 2] = [Integrator::Reference, Integrator::Fast];
+
+/// A film of `samples` of every pixel, rendered on one thread; no sample was refused.
+pub fn render(scene: &Scene, integrator: Integrator, seed: u64, samples: Range<u64>) -> Film {
+    let [width, height] = scene.resolution;
+    let mut film = Film::new(width, height, Layers::ALL).expect("test pictures are small");
+    add_pass(scene, &mut film, samples, RenderOptions { integrator, seed, threads: 1 });
+    assert_eq!(film.rejected(), 0, "{integrator:?} made samples that are no numbers");
+    film
+}
+
+/// Adds the samples to the film.
+pub fn add_pass(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
+    film.open_range(samples.start).expect("passes follow each other");
+    let outcome = render_pass(scene, film, samples.end, &options, &Control::default());
+    assert_eq!(outcome, Outcome::Complete);
+    film.complete_through(samples.end).expect("a complete pass holds all its samples");
+}

@@ -1,0 +1,65 @@
+//! A picture is the same to the last bit however the work is shared out: among threads, and among passes.
+
+use tyndall_film::{Film, Layers};
+use tyndall_scene::Scene;
+use tyndall_transport::RenderOptions;
+
+use crate::rendering::{BOTH, add_pass};
+use crate::scenes::scene;
+
+/// Two overlapping volumes, a grid and a shape, under lights of two kinds; six blocks of tiles, some of them cut.
+fn crowded() -> Scene {
+    scene(
+        r#"
+        camera = { position = [0, 0, 4], target = [0, 0, 0], vertical_fov = 30, aperture_radius = 0.05 }
+        film = { resolution = [150, 90] }
+        [[volume]]
+        procedural = { type = "cumulus", seed = 3, resolution = 32, size = 2 }
+        mu_t = 8
+        albedo = [0.9, 0.8, 0.7]
+        phase = { type = "hg", g = 0.6 }
+        [[volume]]
+        sphere = { center = [0.3, 0, 0.2], radius = 0.5 }
+        mu_t = 3
+        albedo = 0.5
+        emission = [1, 0.5, 0.2]
+        [[light]]
+        type = "constant"
+        radiance = [0.2, 0.3, 0.5]
+        [[light]]
+        type = "distant"
+        direction = [1, -1, -0.5]
+        irradiance = 3
+        "#,
+    )
+}
+
+#[test]
+fn threads_and_passes_change_no_bit() {
+    let scene = crowded();
+    for integrator in BOTH {
+        let film = |threads, passes: &[[u64; 2]]| {
+            let mut film = Film::new(150, 90, Layers::ALL).expect("a small picture");
+            let options = RenderOptions { integrator, seed: 7, threads };
+            for &[start, end] in passes {
+                add_pass(&scene, &mut film, start..end, options);
+            }
+            film
+        };
+        let whole = film(1, &[[0, 12]]);
+        // Films are large to print: only whether they are equal is asserted.
+        for threads in [2, 3] {
+            assert!(whole == film(threads, &[[0, 12]]), "{integrator:?}: {threads} threads");
+        }
+        assert!(whole == film(1, &[[0, 5], [5, 12]]), "{integrator:?}: two passes");
+        assert!(
+            whole == film(3, &[[5, 12], [0, 5]]),
+            "{integrator:?}: two passes in the other order, three threads"
+        );
+
+        let mut left = film(1, &[[0, 5]]);
+        left.merge(&film(2, &[[5, 12]])).expect("disjoint samples of one picture");
+        assert!(whole == left, "{integrator:?}: two films merged");
+        assert!(whole != film(1, &[[1, 13]]), "{integrator:?}: other samples are other pictures");
+    }
+}
