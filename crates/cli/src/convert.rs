@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use miette::{bail, miette};
 use tyndall_volumes::{Codec, Format, WriteOptions};
 
+use crate::output::check_writable;
+use crate::terminal::{answer, tell};
 use crate::volume_input::{self, RawArgs};
 
 /// Write a volume in another format, chosen by the extension
@@ -29,7 +31,7 @@ pub struct Args {
     /// Round values to 16-bit floats (.vdb)
     #[arg(long)]
     half: bool,
-    /// Compression of .vdb and .nvdb; default blosc
+    /// Compression of .vdb (default blosc) and .nvdb (default zip, which every NanoVDB reads)
     #[arg(long, value_enum)]
     codec: Option<CodecName>,
     #[command(flatten)]
@@ -48,23 +50,24 @@ enum CodecName {
 
 /// Reads, writes, and says what was written.
 pub fn run(args: Args) -> miette::Result<()> {
-    let sparse = matches!(Format::from_extension(&args.output), Some(Format::OpenVdb | Format::NanoVdb));
-    if args.codec.is_some() && !sparse {
+    let format = Format::from_extension(&args.output);
+    if args.codec.is_some() && !matches!(format, Some(Format::OpenVdb | Format::NanoVdb)) {
         bail!("{}: --codec is for .vdb and .nvdb; leave it out", args.output.display());
     }
     let codec = match args.codec {
         Some(CodecName::None) => Codec::None,
         Some(CodecName::Zip) => Codec::Zip,
         Some(CodecName::Blosc) => Codec::Blosc,
+        None if format == Some(Format::NanoVdb) => Codec::Zip,
         None => Codec::default(),
     };
+    check_writable([args.output.as_path()])?;
     let file = volume_input::read(&args.input, &args.grid, &args.raw)?;
     for (name, why) in &file.skipped {
-        eprintln!("grid `{name}` is left out: {why}");
+        tell(format!("note: grid `{name}` is left out: {why}"));
     }
     let written = tyndall_volumes::write(&args.output, &file.grids, &WriteOptions { codec, half: args.half })
         .map_err(|error| miette!("{error}"))?;
     let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
-    println!("wrote {} with {}", written.display(), names.join(", "));
-    Ok(())
+    answer(format!("wrote {} with {}\n", written.display(), names.join(", ")))
 }

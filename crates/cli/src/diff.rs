@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use miette::{IntoDiagnostic, miette};
 use tyndall_film::comparison::{Comparison, ErrorSource, Picture, compare};
 
+use crate::terminal::answer;
+use crate::volume_input::check_input;
+
 /// Compare two EXR pictures: errors, means, and whether they differ by more than noise
 ///
 /// B is the reference. Standard errors are taken from the StandardError layers if both pictures have them, and
@@ -28,16 +31,17 @@ pub struct Args {
 
 /// Compares and prints.
 pub fn run(args: Args) -> miette::Result<()> {
+    check_input(&args.a)?;
+    check_input(&args.b)?;
     let a = Picture::read(&args.a).into_diagnostic()?;
     let b = Picture::read(&args.b).into_diagnostic()?;
     let comparison =
         compare(&a, &b).map_err(|what| miette!("{} and {}: {what}", args.a.display(), args.b.display()))?;
     if args.json {
-        println!("{}", serde_json::to_string(&comparison).into_diagnostic()?);
+        answer(serde_json::to_string(&comparison).into_diagnostic()? + "\n")
     } else {
-        print!("{}", table(&comparison));
+        answer(table(&comparison))
     }
-    Ok(())
 }
 
 fn table(c: &Comparison) -> String {

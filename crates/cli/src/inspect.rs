@@ -1,24 +1,28 @@
-//! `tyndall inspect`: what is in a volume file.
+//! `tyndall inspect`: what is in a volume file or a scene.
 
 mod report;
+mod scene;
 mod table;
 
 use std::path::PathBuf;
 
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 
+use crate::render::input;
+use crate::terminal::answer;
 use crate::volume_input::{self, RawArgs};
 use report::Report;
 
-/// Tell what is in a volume file: grids, types, boxes, ranges, voxel size, memory
+/// Tell what is in a volume file or a scene: grids, types, boxes, ranges, memory, optical thickness
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   tyndall inspect smoke.vdb
   tyndall inspect smoke.vdb --grid density --probe=10,-3,7 --json
+  tyndall inspect cloud.toml
   tyndall inspect head.raw --raw-shape 256x256x109 --raw-type uint8")]
 pub struct Args {
-    /// A volume: .vdb .nvdb .vol .npy .nii .nii.gz .raw
+    /// A volume (.vdb .nvdb .vol .npy .nii .nii.gz .raw) or a scene (.toml)
     file: PathBuf,
     /// Only this grid; may be given several times
     #[arg(long, value_name = "NAME")]
@@ -35,14 +39,32 @@ pub struct Args {
 
 /// Reads and prints.
 pub fn run(args: Args) -> miette::Result<()> {
+    if args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return inspect_scene(&args);
+    }
     let file = volume_input::read(&args.file, &args.grid, &args.raw)?;
     let report = Report::new(&file, &args.probe);
     if args.json {
-        println!("{}", serde_json::to_string(&report).into_diagnostic()?);
+        answer(serde_json::to_string(&report).into_diagnostic()? + "\n")
     } else {
-        print!("{}", table::table(&args.file, &report));
+        answer(table::table(&args.file, &report))
     }
-    Ok(())
+}
+
+fn inspect_scene(args: &Args) -> miette::Result<()> {
+    if !args.grid.is_empty() || !args.probe.is_empty() {
+        return Err(miette!(
+            "{}: --grid and --probe are for volume files; inspect the file that the scene names",
+            args.file.display()
+        ));
+    }
+    let input = input::load(Some(&args.file), &[], &args.raw)?;
+    let report = scene::SceneReport::new(&input)?;
+    if args.json {
+        answer(serde_json::to_string(&report).into_diagnostic()? + "\n")
+    } else {
+        answer(scene::text(&input, &report))
+    }
 }
 
 fn voxel(text: &str) -> Result<[i32; 3], String> {

@@ -6,6 +6,7 @@ mod inspect;
 mod merge;
 mod output;
 mod render;
+mod terminal;
 mod volume_input;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -57,7 +58,7 @@ fn main() -> ExitCode {
         Ok(Done::All) => ExitCode::SUCCESS,
         Ok(Done::Interrupted) => ExitCode::from(130),
         Err(report) => {
-            eprintln!("{report:?}");
+            terminal::tell_error(&report);
             ExitCode::from(1)
         }
     }
@@ -72,9 +73,11 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
         Some(Command::Merge(args)) => merge::run(args)?,
         Some(Command::Diff(args)) => diff::run(args)?,
         Some(Command::Completions { shell }) => {
-            clap_complete::generate(shell, &mut Cli::command(), "tyndall", &mut std::io::stdout());
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "tyndall", &mut script);
+            terminal::answer(String::from_utf8_lossy(&script))?;
         }
-        Some(Command::Schema) => println!("{:#}", tyndall_scene::json_schema()),
+        Some(Command::Schema) => terminal::answer(format!("{:#}\n", tyndall_scene::json_schema()))?,
     }
     Ok(Done::All)
 }

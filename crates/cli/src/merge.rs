@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use miette::IntoDiagnostic;
 use tyndall_film::Accumulation;
 
-use crate::output::Output;
+use crate::output::{Output, check_writable, parse_exposure, write_all};
+use crate::terminal::{answer, tell};
+use crate::volume_input::check_input;
 
 /// Join renders of the same scene with disjoint samples into one picture
 ///
@@ -24,35 +26,33 @@ pub struct Args {
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<Output>,
     /// Brighten the .png by 2^STOPS
-    #[arg(long, default_value_t = 0.0, value_name = "STOPS", allow_negative_numbers = true)]
-    exposure: f32,
+    #[arg(long, default_value = "0", value_name = "STOPS", allow_negative_numbers = true, value_parser = parse_exposure)]
+    exposure: f64,
 }
 
 /// Merges, writes, and says what the result holds.
 pub fn run(args: Args) -> miette::Result<()> {
     let Some((first, others)) = args.inputs.split_first() else { return Ok(()) };
+    check_writable(args.output.iter().map(Output::path))?;
+    args.inputs.iter().try_for_each(|path| check_input(path))?;
     let mut sum = Accumulation::read(first).into_diagnostic()?;
     for path in others {
         let other = Accumulation::read(path).into_diagnostic()?;
         sum.merge(first, &other, path).into_diagnostic()?;
     }
-    for output in &args.output {
-        output.write(&sum, args.exposure)?;
-    }
+    write_all(&args.output, &sum, args.exposure as f32)?;
     let film = &sum.film;
     let error = film.median_relative_error().filter(|e| e.is_finite());
     let error = error.map_or("unknown".into(), |e| format!("{:.3} %", 100.0 * e));
-    println!(
-        "{}x{} pixels, samples {}, median relative error {error}",
+    if film.rejected() > 0 {
+        tell(format!("note: {} samples were not finite or too large and count as black", film.rejected()));
+    }
+    let written: String =
+        args.output.iter().map(|output| format!("wrote {}\n", output.path().display())).collect();
+    answer(format!(
+        "{}x{} pixels, samples {}, median relative error {error}\n{written}",
         film.width(),
         film.height(),
         film.complete()
-    );
-    if film.rejected() > 0 {
-        println!("{} samples were not finite or too large and count as black", film.rejected());
-    }
-    for output in &args.output {
-        println!("wrote {}", output.path().display());
-    }
-    Ok(())
+    ))
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Summary, write_exr, write_png};
 
 /// A file that `-o` names: `.exr`, `.png`, `.acc` or `.json`.
@@ -43,8 +43,7 @@ impl Output {
         &self.path
     }
 
-    /// Writes the picture; `exposure` in stops only concerns `.png`.
-    pub fn write(&self, picture: &Accumulation, exposure: f32) -> miette::Result<()> {
+    fn write(&self, picture: &Accumulation, exposure: f32) -> miette::Result<()> {
         let Accumulation { film, metadata } = picture;
         match self.format {
             Format::Exr => write_exr(&self.path, film, metadata),
@@ -56,6 +55,42 @@ impl Output {
     }
 }
 
+/// Writes the picture to all of `outputs`; `exposure` in stops only concerns `.png`.
+///
+/// One that cannot be written does not keep the picture from the others.
+pub fn write_all(outputs: &[Output], picture: &Accumulation, exposure: f32) -> miette::Result<()> {
+    let written: Vec<_> = outputs.iter().map(|output| output.write(picture, exposure)).collect();
+    written.into_iter().collect()
+}
+
+/// Refuses files that cannot be made: it is better to hear now than after an hour of rendering.
+pub fn check_writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> miette::Result<()> {
+    for path in paths {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            return Err(miette!("{}: its folder does not exist; create it first", path.display()));
+        }
+        if path.is_dir() {
+            return Err(miette!("{}: is a folder; give the name of a file", path.display()));
+        }
+        // Files appear under another name first, in the same folder.
+        if let Err(error) = tempfile::tempfile_in(folder) {
+            return Err(miette!(
+                "{}: nothing can be written in its folder ({error}); choose another",
+                path.display()
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// `--exposure`: more stops than any picture has would only overflow.
+pub fn parse_exposure(text: &str) -> Result<f64, String> {
+    let stops = text.parse::<f64>().ok().filter(|stops| stops.abs() <= 64.0);
+    stops.ok_or("write stops from -64 to 64, such as 1.5".into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,5 +99,11 @@ mod tests {
     fn the_extension_decides_in_any_case_and_others_are_refused() {
         assert_eq!("a/b.EXR".parse::<Output>().map(|o| o.format), Ok(Format::Exr));
         assert!("a.exr.gz".parse::<Output>().is_err() && "exr".parse::<Output>().is_err());
+    }
+
+    #[test]
+    fn exposures_are_finite() {
+        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
+        assert!(["nan", "inf", "1e30", ""].iter().all(|text| parse_exposure(text).is_err()));
     }
 }

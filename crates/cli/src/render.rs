@@ -1,6 +1,6 @@
 //! `tyndall render`: a scene or a volume becomes a picture with its error.
 
-mod input;
+pub mod input;
 mod progress;
 mod stop;
 
@@ -16,7 +16,9 @@ use tyndall_scene::{Scene, build, scene_hash};
 use tyndall_transport::{Control, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
-use crate::output::Output;
+use crate::output::{Output, check_writable, parse_exposure, write_all};
+use crate::terminal::{answer, tell};
+use crate::volume_input::RawArgs;
 use progress::{Progress, ProgressStyle};
 use stop::{Goal, Plan};
 
@@ -54,7 +56,7 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     resolution: Option<[u32; 2]>,
     /// Brighten the .png by 2^STOPS
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = parse_exposure)]
     exposure: Option<f64>,
     /// Change one value of the scene, such as camera.vertical_fov=30 or volume.0.mu_t=3
     #[arg(long, value_name = "KEY=VALUE")]
@@ -74,6 +76,8 @@ pub struct Args {
     /// Print the scene as a scene file and stop
     #[arg(long)]
     print_scene: bool,
+    #[command(flatten)]
+    raw: RawArgs,
 }
 
 impl Args {
@@ -94,37 +98,40 @@ impl Args {
             resume: false,
             progress: ProgressStyle::default(),
             print_scene: false,
+            raw: RawArgs::default(),
         }
     }
 }
 
 /// Loads, builds, renders, writes.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = input::load(args.input.as_deref(), &overrides(&args))?;
+    let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw)?;
     let description = &input.description;
     if args.print_scene {
-        print!("{}", input.text);
-        return Ok(Done::All);
+        return answer(&input.text).map(|()| Done::All);
     }
     let outputs = if args.output.is_empty() { input.default_outputs() } else { args.output.clone() };
-    check_folders(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
+    check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
 
+    let [width, height] = description.film.resolution;
+    // First of all, as it may be too large for this machine.
+    let film = Film::new(width, height, layers(description)).into_diagnostic()?;
     let built = build(description, &input.folder)?;
     for note in input.notes.iter().chain(&built.notes) {
-        eprintln!("note: {note}");
+        tell(format!("note: {note}"));
     }
-    let mut picture = open_picture(&args, description, &input.folder)?;
+    let mut picture = open_picture(&args, description, &input.folder, film)?;
     let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
     let end = render(&args, &built.scene, description, &plan, &mut picture)?;
 
     if picture.film.mean_sample_count() == 0.0 {
-        eprintln!("interrupted before anything was rendered; nothing is written");
+        tell("interrupted before anything was rendered; nothing is written");
         return Ok(end);
     }
     let exposure = args.exposure.unwrap_or(description.film.exposure) as f32;
-    for output in &outputs {
-        output.write(&picture, exposure)?;
-    }
+    let saved = args.checkpoint.as_deref().map_or(Ok(()), |checkpoint| picture.write(checkpoint));
+    write_all(&outputs, &picture, exposure)?;
+    saved.into_diagnostic()?;
     report(&picture, &outputs, &end);
     Ok(end)
 }
@@ -145,24 +152,13 @@ fn name(integrator: Integrator) -> &'static str {
     }
 }
 
-/// It is better to hear now than after an hour that a folder does not exist.
-fn check_folders<'a>(paths: impl Iterator<Item = &'a Path>) -> miette::Result<()> {
-    for path in paths {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if folder.is_some_and(|folder| !folder.is_dir()) {
-            return Err(miette!("{}: its folder does not exist; create it first", path.display()));
-        }
-        if path.is_dir() {
-            return Err(miette!("{}: is a folder; give the name of a file", path.display()));
-        }
-    }
-    Ok(())
-}
-
 /// An empty film, or the one of the checkpoint.
-fn open_picture(args: &Args, description: &SceneDescription, folder: &Path) -> miette::Result<Accumulation> {
-    let [width, height] = description.film.resolution;
-    let layers = layers(description);
+fn open_picture(
+    args: &Args,
+    description: &SceneDescription,
+    folder: &Path,
+    film: Film,
+) -> miette::Result<Accumulation> {
     let metadata = ImageMetadata {
         scene_hash: scene_hash(description, folder)?.to_string(),
         version: env!("CARGO_PKG_VERSION").to_string(),
@@ -170,7 +166,6 @@ fn open_picture(args: &Args, description: &SceneDescription, folder: &Path) -> m
         seed: u64::from(description.render.seed),
         seconds: 0.0,
     };
-    let film = Film::new(width, height, layers).into_diagnostic()?;
     let empty = Accumulation { film, metadata };
     let Some(checkpoint) = args.checkpoint.as_deref().filter(|path| path.exists()) else { return Ok(empty) };
     if !args.resume {
@@ -183,10 +178,10 @@ fn open_picture(args: &Args, description: &SceneDescription, folder: &Path) -> m
     let same = |a: &ImageMetadata, b: &ImageMetadata| {
         (&a.scene_hash, &a.version, &a.options, a.seed) == (&b.scene_hash, &b.version, &b.options, b.seed)
     };
-    let same_size = (saved.film.width(), saved.film.height()) == (width, height);
-    if !same(&saved.metadata, &empty.metadata) || !same_size || saved.film.layers() != layers {
+    let shape = |film: &Film| (film.width(), film.height(), film.layers());
+    if !same(&saved.metadata, &empty.metadata) || shape(&saved.film) != shape(&empty.film) {
         return Err(miette!(
-            "{}: is of another scene, size, seed, integrator or version; name another --checkpoint",
+            "{}: is of another scene, size, seed, integrator, layers or version; name another --checkpoint",
             checkpoint.display()
         ));
     }
@@ -223,25 +218,26 @@ fn render(
     let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
     let mut clock = stop::Clock::start(picture.metadata.seconds);
     let progress = Progress::start(args.progress, pixels, plan.spp(), Arc::clone(&control));
+    let mut end = Done::All;
     while let Some(pass) = plan.next_pass(&picture.film, &clock) {
         picture.film.open_range(pass.start).into_diagnostic()?;
         let outcome = render_pass(scene, &mut picture.film, pass.end, &options, &control);
         picture.metadata.seconds = clock.seconds();
         if outcome == Outcome::Cancelled {
+            end = Done::Interrupted;
             break;
         }
         picture.film.complete_through(pass.end).into_diagnostic()?;
         progress.pass_done(&picture.film);
         if let Some(checkpoint) = args.checkpoint.as_deref().filter(|_| clock.checkpoint_is_due()) {
-            picture.write(checkpoint).into_diagnostic()?;
+            // The next may go well, and the picture itself is not lost.
+            if let Err(error) = picture.write(checkpoint) {
+                tell(format!("note: no checkpoint: {error}"));
+            }
         }
     }
     progress.finish();
-    if let Some(checkpoint) = &args.checkpoint {
-        picture.write(checkpoint).into_diagnostic()?;
-    }
-    let interrupted = control.cancel.load(Ordering::Relaxed);
-    Ok(if interrupted { Done::Interrupted } else { Done::All })
+    Ok(end)
 }
 
 /// The first Ctrl-C ends the render, which saves what there is; the second ends the program.
@@ -260,18 +256,19 @@ fn report(picture: &Accumulation, outputs: &[Output], end: &Done) {
     let error = film.median_relative_error().filter(|error| error.is_finite());
     let error = error.map_or("error not known yet".into(), |e| format!("median error {:.2} %", 100.0 * e));
     let interrupted = if matches!(end, Done::Interrupted) { "interrupted: " } else { "" };
-    eprintln!(
-        "{interrupted}{}x{}, {:.4} samples a pixel, {error}, {:.1} s",
+    let samples = film.mean_sample_count();
+    let samples = if samples.fract() == 0.0 { format!("{samples}") } else { format!("{samples:.2}") };
+    tell(format!(
+        "{interrupted}{}x{}, {samples} samples a pixel, {error}, {:.1} s",
         film.width(),
         film.height(),
-        film.mean_sample_count(),
         picture.metadata.seconds
-    );
+    ));
     if film.rejected() > 0 {
-        eprintln!("note: {} samples were not finite or too large and count as black", film.rejected());
+        tell(format!("note: {} samples were not finite or too large and count as black", film.rejected()));
     }
     for output in outputs {
-        eprintln!("wrote {}", output.path().display());
+        tell(format!("wrote {}", output.path().display()));
     }
 }
 

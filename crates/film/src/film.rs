@@ -91,24 +91,50 @@ pub struct Film {
     pub(crate) rejected: u64,
 }
 
-/// A size that no film can have.
+/// A size that a film cannot have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "a picture of {width}x{height} pixels cannot be made: it must have between 1 and {MAX_PIXELS} pixels"
-)]
-pub struct SizeError {
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
+pub enum SizeError {
+    /// No film can.
+    #[error(
+        "a picture of {width}x{height} pixels cannot be made: it must have between 1 and {MAX_PIXELS} pixels"
+    )]
+    Pixels {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// This machine has not the memory.
+    #[error(
+        "a picture of {width}x{height} pixels takes {:.1} GB of memory, more than there is; give a smaller \
+         resolution or fewer layers",
+        *.bytes as f64 * 1e-9
+    )]
+    Memory {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// What the film takes when all of its layers are in use.
+        bytes: usize,
+    },
 }
 
 /// Number of pixels of a film of this size.
 pub(crate) fn pixel_count(width: u32, height: u32) -> Result<usize, SizeError> {
     match u64::from(width) * u64::from(height) {
         count @ 1..=MAX_PIXELS => Ok(count as usize),
-        _ => Err(SizeError { width, height }),
+        _ => Err(SizeError::Pixels { width, height }),
     }
+}
+
+/// Whether the system would hand out so much memory; it is given back untouched.
+fn can_allocate(bytes: usize) -> bool {
+    let mut probe: Vec<u8> = Vec::new();
+    let is_granted = probe.try_reserve_exact(bytes).is_ok();
+    // Without a use, the compiler may leave out the allocation and claim that it went well.
+    std::hint::black_box(&probe);
+    is_granted
 }
 
 /// Number of tiles of a film of this size.
@@ -119,7 +145,12 @@ pub(crate) fn tile_count(width: u32, height: u32) -> usize {
 impl Film {
     /// A film without samples.
     pub fn new(width: u32, height: u32, layers: Layers) -> Result<Self, SizeError> {
-        let sums = Sums::zero(pixel_count(width, height)?);
+        let count = pixel_count(width, height)?;
+        let bytes = Sums::bytes(count, layers);
+        if !can_allocate(bytes) {
+            return Err(SizeError::Memory { width, height, bytes });
+        }
+        let sums = Sums::zero(count);
         Ok(Self { width, height, layers, sums, complete: SampleRanges::default(), open: None, rejected: 0 })
     }
 
@@ -367,8 +398,14 @@ mod tests {
     #[test]
     fn impossible_sizes_are_refused() {
         for (width, height) in [(0, 5), (5, 0), (u32::MAX, u32::MAX)] {
-            assert_eq!(Film::new(width, height, Layers::NONE), Err(SizeError { width, height }));
+            assert_eq!(Film::new(width, height, Layers::NONE), Err(SizeError::Pixels { width, height }));
         }
+    }
+
+    #[test]
+    fn a_film_beyond_all_memory_is_an_error() {
+        assert!(can_allocate(1 << 20) && !can_allocate(usize::MAX / 4));
+        assert_eq!(Sums::bytes(10, Layers::NONE), 1280);
     }
 
     #[test]

@@ -50,6 +50,19 @@ impl Sums {
         Self { pixels: vec![PixelSums::default(); count], ..Self::default() }
     }
 
+    /// Memory of the sums of `count` pixels once all of the layers are in use.
+    pub fn bytes(count: usize, layers: Layers) -> usize {
+        let planes = [
+            (layers.depth, size_of::<i128>()),
+            (layers.albedo, size_of::<[u64; 3]>()),
+            (layers.emission, size_of::<[i128; 3]>()),
+            (layers.single, size_of::<[i128; 3]>()),
+            (layers.multiple, size_of::<[i128; 3]>()),
+        ];
+        let pixel = planes.iter().filter(|(is_kept, _)| *is_kept).map(|(_, bytes)| bytes).sum::<usize>();
+        count.saturating_mul(size_of::<PixelSums>() + pixel)
+    }
+
     /// Adds a sample to the pixel at `index`; `false`, and nothing is added, if some number of it has no place in
     /// the sums (not finite, or too large).
     pub fn add(&mut self, index: usize, sample: &Sample, layers: Layers) -> bool {

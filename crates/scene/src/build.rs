@@ -7,7 +7,7 @@ use std::sync::Arc;
 use tyndall_optics::PhaseFunction;
 use tyndall_volumes::{
     AxisOrder, BrickGrid, ByteOrder, Element, Grid, GridClass, GridSelection, GridValues, RawShape,
-    ReadRequest,
+    ReadError, ReadRequest,
 };
 
 use crate::description::{
@@ -23,6 +23,8 @@ use crate::{Camera, Density, Medium, Scene, SceneDescription, SceneError, Volume
 pub struct BuiltScene {
     /// The scene.
     pub scene: Scene,
+    /// The grid that each volume has from its file: names of the volume and of the grid.
+    pub grids: Vec<(String, String)>,
     /// Guesses and warnings, one line each.
     pub notes: Vec<String>,
 }
@@ -30,6 +32,7 @@ pub struct BuiltScene {
 /// Builds the scene of `description`, whose file names are relative to `folder`.
 pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene, SceneError> {
     let mut notes = Vec::new();
+    let mut grids = Vec::new();
     let mut volumes = Vec::new();
     if let Some(medium) = &description.medium {
         volumes.push(Volume {
@@ -41,7 +44,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
     }
     for (number, volume) in description.volumes.iter().enumerate() {
         let name = volume.name.clone().unwrap_or_else(|| format!("volume.{number}"));
-        volumes.push(build_volume(volume, name, folder, &mut notes)?);
+        volumes.push(build_volume(volume, name, folder, &mut grids, &mut notes)?);
     }
     // Nothing collides where there is no extinction.
     volumes.retain(|volume| volume.medium.mu_t > 0.0);
@@ -61,13 +64,14 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
         light_probabilities,
         max_depth: description.render.max_depth,
     };
-    Ok(BuiltScene { scene, notes })
+    Ok(BuiltScene { scene, grids, notes })
 }
 
 fn build_volume(
     description: &VolumeDescription,
     name: String,
     folder: &Path,
+    grids: &mut Vec<(String, String)>,
     notes: &mut Vec<String>,
 ) -> Result<Volume, SceneError> {
     let source = description.source().map_err(|(_, message)| SceneError::file(Path::new(&name), message))?;
@@ -77,6 +81,7 @@ fn build_volume(
         VolumeSource::File(file) => {
             let path = folder.join(file);
             let grid = read_grid(description, &path, notes)?;
+            grids.push((name.clone(), grid.name.clone()));
             let bricks = build_bricks(description, &grid, &path, notes)?;
             (Density::Grid(Arc::new(bricks)), grid.index_to_world)
         }
@@ -137,18 +142,28 @@ fn read_grid(
         axis_order: AxisOrder::XFastest,
     });
     let file = tyndall_volumes::read(path, &ReadRequest { grids, raw }).map_err(|error| {
+        if matches!(&error, ReadError::Io { error, .. } if error.kind() == std::io::ErrorKind::NotFound) {
+            let mend = "there is no such file; mend the key `file`, which is relative to the scene file";
+            return SceneError::file(path, mend);
+        }
         let message = error.to_string();
         let prefix = format!("{}: ", path.display());
         SceneError::file(path, message.strip_prefix(&prefix).unwrap_or(&message))
     })?;
     let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
-    let count = file.grids.len();
+    let same_name = description.grid.is_some();
     let Some(grid) = choose_density(file.grids) else {
-        return Err(SceneError::file(path, format!("has no scalar grid; it has {}", names.join(", "))));
+        return Err(SceneError::file(
+            path,
+            format!("has no scalar grid; it has the vectors {}; a density is needed", names.join(", ")),
+        ));
     };
-    if count > 1 {
+    if names.len() > 1 && same_name {
+        let count = names.len();
+        notes.push(format!("{}: of {count} grids `{}` the first is rendered", path.display(), grid.name));
+    } else if names.len() > 1 {
         notes.push(format!(
-            "{}: of the grids {} `{}` is rendered",
+            "{}: of the grids {} `{}` is rendered; the key `grid` names another",
             path.display(),
             names.join(", "),
             grid.name
@@ -214,6 +229,13 @@ fn build_bricks(
             "{}: {} values of `{}` are not finite and count as 0",
             path.display(),
             bricks.non_finite(),
+            grid.name
+        ));
+    }
+    if bricks.bounds().max <= 0.0 {
+        notes.push(format!(
+            "{}: `{}` is nowhere above 0: there is nothing to see",
+            path.display(),
             grid.name
         ));
     }

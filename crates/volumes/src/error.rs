@@ -6,12 +6,12 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The operating system refused.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {error}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
+        /// What the system said; part of the message, and so not its `source` as well.
+        error: std::io::Error,
     },
     /// The bytes contradict the format: truncated, corrupted, or not such a file.
     #[error("{}: {what}", path.display())]
@@ -45,12 +45,12 @@ pub enum ReadError {
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The operating system refused.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {error}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
+        /// What the system said; part of the message, and so not its `source` as well.
+        error: std::io::Error,
     },
     /// What is to be written has no place in the format.
     #[error("{}: {what}", path.display())]

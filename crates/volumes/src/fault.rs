@@ -34,7 +34,7 @@ impl Fault {
     pub(crate) fn at(self, path: &Path) -> ReadError {
         let path = path.to_path_buf();
         match self {
-            Self::Io(source) => ReadError::Io { path, source },
+            Self::Io(error) => ReadError::Io { path, error },
             Self::Damaged(what) => ReadError::Damaged { path, what },
             Self::Unsupported(what) => ReadError::Unsupported { path, what },
         }

@@ -23,7 +23,7 @@ use crate::{Codec, Format, Grid, WriteError, WriteOptions, nifti, npy, nvdb, raw
 /// If the file cannot be written, or the format cannot hold these grids.
 pub fn write(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<PathBuf, WriteError> {
     let error = |fault| match fault {
-        Fault::Io(source) => WriteError::Io { path: path.to_path_buf(), source },
+        Fault::Io(error) => WriteError::Io { path: path.to_path_buf(), error },
         Fault::Damaged(what) | Fault::Unsupported(what) => {
             WriteError::Unwritable { path: path.to_path_buf(), what }
         }

@@ -120,7 +120,7 @@ fn grouped(n: u64) -> String {
     text
 }
 
-fn bytes(n: u64) -> String {
+pub(super) fn bytes(n: u64) -> String {
     match n {
         0..10_000 => format!("{n} bytes"),
         10_000..10_000_000 => format!("{:.1} kB", n as f64 * 1e-3),
@@ -128,12 +128,12 @@ fn bytes(n: u64) -> String {
     }
 }
 
-fn triple(parts: [String; 3]) -> String {
+pub(super) fn triple(parts: [String; 3]) -> String {
     format!("({})", parts.join(", "))
 }
 
 /// Six significant digits.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {
         return format!("{x:.5e}");
     }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use miette::{IntoDiagnostic, miette};
+use miette::miette;
 use tyndall_scene::description::VolumeSummary;
 use tyndall_scene::{SceneDescription, SceneDocument, choose_density};
-use tyndall_volumes::{Grid, ReadRequest};
+use tyndall_volumes::Grid;
 
 use crate::output::Output;
+use crate::volume_input::{self, RawArgs};
 
 /// A scene to render.
 pub struct Input {
@@ -37,15 +38,20 @@ impl Input {
     }
 }
 
-/// Loads `path`, or the built-in scene, and applies `overrides` of the form `key=value`.
-pub fn load(path: Option<&Path>, overrides: &[String]) -> miette::Result<Input> {
+/// Loads `path`, or the built-in scene, and applies `overrides` of the form `key=value`; `raw` is for a bare volume.
+pub fn load(path: Option<&Path>, overrides: &[String], raw: &RawArgs) -> miette::Result<Input> {
     let Some(path) = path else {
         let document = SceneDocument::parse("the built-in scene", DEFAULT_SCENE)?;
         return from_document(document, overrides, Some(DEFAULT_SCENE), PathBuf::new(), "cloud".into());
     };
+    volume_input::check_input(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = name.split('.').next().filter(|stem| !stem.is_empty()).unwrap_or("picture").to_owned();
     match name.rsplit('.').next().map(str::to_ascii_lowercase).as_deref() {
+        Some("toml") if raw.is_given() => Err(miette!(
+            "{}: --raw-shape is for a .raw file; give raw_shape and raw_type in the scene's [[volume]]",
+            path.display()
+        )),
         Some("toml") => {
             let folder = path.parent().unwrap_or(Path::new("")).to_owned();
             from_document(SceneDocument::read(path)?, overrides, None, folder, stem)
@@ -58,7 +64,7 @@ pub fn load(path: Option<&Path>, overrides: &[String]) -> miette::Result<Input> 
             "{}: is not a scene or a volume; give a .toml scene or a volume file (.vdb .nvdb .vol .npy .nii .raw)",
             path.display()
         )),
-        _ => from_volume(path, overrides, stem),
+        _ => from_volume(path, overrides, raw, stem),
     }
 }
 
@@ -79,27 +85,34 @@ fn from_document(
 }
 
 /// The scene of a bare volume, made up from its data.
-fn from_volume(path: &Path, overrides: &[String], stem: String) -> miette::Result<Input> {
-    let file = tyndall_volumes::read(path, &ReadRequest::default()).into_diagnostic()?;
+fn from_volume(path: &Path, overrides: &[String], raw: &RawArgs, stem: String) -> miette::Result<Input> {
+    let file = volume_input::read(path, &[], raw)?;
     let mut notes: Vec<String> =
         file.skipped.iter().map(|(name, why)| format!("{}: grid `{name}`: {why}", path.display())).collect();
-    let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
+    let mut names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
+    // The scene says which of several grids of one name is taken.
+    names.dedup();
     let Some(grid) = choose_density(file.grids) else {
-        return Err(miette!("{}: has no scalar grid to render; it has {}", path.display(), names.join(", ")));
+        return Err(miette!(
+            "{}: has no scalar grid to render, only the vectors {}; give a file with a density",
+            path.display(),
+            names.join(", ")
+        ));
     };
     if names.len() > 1 {
         notes.push(format!("of the grids {} `{}` is rendered", names.join(", "), grid.name));
     }
     let Some(summary) = summary(&grid) else {
         return Err(miette!(
-            "{}: grid `{}` has no active voxels: there is nothing to see",
+            "{}: grid `{}` has no active voxels: there is nothing to see; give a file with a density",
             path.display(),
             grid.name
         ));
     };
     drop(grid);
-    let automatic = SceneDescription::for_volume(&path.display().to_string(), &summary);
+    let mut automatic = SceneDescription::for_volume(&path.display().to_string(), &summary);
     notes.push("light, camera and density are chosen from the data; --print-scene shows them".into());
+    automatic.description.volumes.iter_mut().try_for_each(|volume| raw.describe(volume))?;
     let text = automatic.to_toml();
     let document = SceneDocument::parse("the scene made up for the volume", &text)?;
     let mut input = from_document(document, overrides, Some(&text), PathBuf::new(), stem)?;

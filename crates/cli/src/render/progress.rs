@@ -11,6 +11,8 @@ use serde::Serialize;
 use tyndall_film::Film;
 use tyndall_transport::Control;
 
+use crate::terminal;
+
 /// How progress is reported.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum ProgressStyle {
@@ -137,7 +139,8 @@ impl Shared {
                 let error = *self.error.lock().unwrap_or_else(PoisonError::into_inner);
                 let line = Line { samples: paths / self.pixels, seconds, rate, error, time_left: left };
                 if let Ok(line) = serde_json::to_string(&line) {
-                    println!("{line}");
+                    // Whether anyone listens is no matter for the picture.
+                    let _ = terminal::answer(line + "\n");
                 }
             }
         }

@@ -149,11 +149,13 @@ impl Check {
                 Some(property) => self.value(&entry.node, &name_of(&entry.key, property), property),
                 None => {
                     has_unknown = true;
-                    let absent = properties
-                        .keys()
-                        .map(String::as_str)
-                        .filter(|key| !entries.iter().any(|entry| entry.key == **key));
-                    let mend = did_you_mean(&entry.key, absent);
+                    let keys = || properties.keys().map(String::as_str);
+                    let absent = || keys().filter(|key| !entries.iter().any(|entry| entry.key == **key));
+                    // A `--set` that misspells a key means one that is there already.
+                    let mend = match nearest(&entry.key, absent()) {
+                        None if nearest(&entry.key, keys()).is_some() => did_you_mean(&entry.key, keys()),
+                        _ => did_you_mean(&entry.key, absent()),
+                    };
                     self.report(&entry.key_place, format!("unknown key `{}` in {name}{mend}", entry.key));
                 }
             }
@@ -289,18 +291,20 @@ fn range_in_words(schema: &Schema) -> String {
 /// `, did you mean …?`, or what there is to choose from.
 fn did_you_mean<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> String {
     let choices: Vec<&str> = choices.collect();
-    let nearest = choices
-        .iter()
-        .map(|choice| (strsim::damerau_levenshtein(&word.to_lowercase(), choice), choice))
-        .min_by_key(|(distance, _)| *distance);
-    match nearest {
-        // Up to a third of the letters may be wrong.
-        Some((distance, choice)) if 3 * distance <= word.chars().count().max(choice.len()) => {
-            format!(", did you mean `{choice}`?")
-        }
-        Some(_) => format!("; there is {}", list_of(choices)),
-        None => String::new(),
+    match nearest(word, choices.iter().copied()) {
+        Some(choice) => format!(", did you mean `{choice}`?"),
+        None if choices.is_empty() => String::new(),
+        None => format!("; there is {}", list_of(choices)),
     }
+}
+
+/// The choice that differs least from `word`, in a third of the letters at most.
+fn nearest<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    choices
+        .map(|choice| (strsim::damerau_levenshtein(&word.to_lowercase(), choice), choice))
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, choice)| 3 * distance <= word.chars().count().max(choice.len()))
+        .map(|(_, choice)| choice)
 }
 
 fn list_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {

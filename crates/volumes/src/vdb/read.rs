@@ -39,7 +39,7 @@ pub struct SkippedGrid {
 /// When the file cannot be opened or is damaged, when a grid asked for by name is not there or is of a kind that is
 /// not read, and when all are asked for and none can be read.
 pub fn read(path: &Path, selection: &GridSelection) -> Result<VdbFile, ReadError> {
-    let io = |source| ReadError::Io { path: path.to_owned(), source };
+    let io = |error| ReadError::Io { path: path.to_owned(), error };
     let mut file = std::fs::File::open(path).map_err(io)?;
     let mut bytes = Vec::new();
     // A large file of another kind is not read to its end.

@@ -37,7 +37,7 @@ pub struct WriteOptions {
 /// When the file cannot be written, when leaves or tiles of a tree overlap or stand where an OpenVDB tree has no
 /// place for them, and when a finite value is too large for a half that is asked for.
 pub fn write(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<(), WriteError> {
-    let io = |source| WriteError::Io { path: path.to_owned(), source };
+    let io = |error| WriteError::Io { path: path.to_owned(), error };
     let name = path.file_name().ok_or_else(|| io(io::ErrorKind::IsADirectory.into()))?;
     let part = path.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
     let written = write_file(&part, grids, options).and_then(|()| Ok(std::fs::rename(&part, path)?));
