@@ -227,7 +227,12 @@ fn render(
             end = Done::Interrupted;
             break;
         }
-        picture.film.complete_through(pass.end).into_diagnostic()?;
+        // Only what was resumed can hold more than was asked for now.
+        let resumed = args.checkpoint.as_deref().unwrap_or(Path::new("the picture"));
+        picture
+            .film
+            .complete_through(pass.end)
+            .map_err(|error| miette!("{}: {error} (--spp or --samples)", resumed.display()))?;
         progress.pass_done(&picture.film);
         if let Some(checkpoint) = args.checkpoint.as_deref().filter(|_| clock.checkpoint_is_due()) {
             // The next may go well, and the picture itself is not lost.

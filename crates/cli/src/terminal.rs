@@ -52,17 +52,18 @@ const LONGEST_LINE: usize = 160;
 /// The line of a problem, and a line that marks its place in it.
 fn snippet(problem: &dyn Diagnostic) -> Option<[String; 2]> {
     let label = problem.labels()?.next()?;
-    let span = problem.source_code()?.read_span(label.inner(), 0, 0).ok()?;
+    // With a line of context on either side, as the line itself is only given from the label on without.
+    let span = problem.source_code()?.read_span(label.inner(), 1, 1).ok()?;
     let text = std::str::from_utf8(span.data()).ok()?;
-    // The span begins at the start of the line that the label begins in.
-    let line = text.lines().next()?;
-    let before = line.get(..label.offset().checked_sub(span.span().offset())?)?;
+    let at = label.offset().checked_sub(span.span().offset())?;
+    let line_start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+    let line = text[line_start..].lines().next()?;
+    let before = line.get(..at - line_start)?;
     if line.trim().is_empty() || line.chars().count() > LONGEST_LINE {
         return None;
     }
-    let marked: String = line[before.len()..].chars().collect();
-    let length = label.len().min(marked.len());
-    let length = marked.char_indices().filter(|(at, _)| *at < length).count().max(1);
+    let marked = line[before.len()..].char_indices().filter(|(at, _)| *at < label.len());
+    let length = marked.count().max(1);
     let indent: String = before.chars().map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
     Some([line.to_owned(), format!("{indent}{}", "^".repeat(length))])
 }
@@ -79,11 +80,11 @@ mod tests {
 
     #[test]
     fn the_marker_stands_under_the_place_also_behind_wide_letters() {
-        let text = "unit = \"µm\"\ncamera = { position = [0, 0, 5], target = [0, 0, 0], röll = 3 }\n";
+        let text = "camera = { position = [0, 0, 5], target = [0, 0, 0], \"röll\" = 3, roll = 3 }\n";
         let document = SceneDocument::parse("scene.toml", text);
         let error = document.and_then(|document| document.description()).unwrap_err();
-        let [line, marker] = snippet(&error.problems()[0]).unwrap();
-        let start = line.chars().position(|c| c == 'ö').unwrap() - 1;
-        assert_eq!(marker, format!("{}^^^^", " ".repeat(start)));
+        let [line, marker] = snippet(&error.problems()[1]).unwrap();
+        assert_eq!(format!("{line}\n"), text);
+        assert_eq!(marker, format!("{}^^^^", " ".repeat(text.chars().count() - 11)));
     }
 }

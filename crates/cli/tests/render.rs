@@ -1,0 +1,198 @@
+//! `tyndall render`: the same bits whatever the way, stop rules, interruption, reports.
+
+mod command;
+
+#[cfg(unix)]
+use std::io::{BufRead, BufReader};
+#[cfg(unix)]
+use std::process::{Child, Stdio};
+
+use command::{Folder, shared_volumes};
+use serde_json::Value;
+
+/// The picture and all its layers, without what depends on the clock.
+fn pixels(folder: &Folder, name: &str) -> Vec<u8> {
+    let mut picture = folder.accumulation(name);
+    picture.metadata.seconds = 0.0;
+    let path = folder.path("timeless.exr");
+    tyndall_film::write_exr(&path, &picture.film, &picture.metadata).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+fn same_film(folder: &Folder, a: &str, b: &str) {
+    assert!(folder.accumulation(a).film == folder.accumulation(b).film, "{a} and {b} differ");
+}
+
+#[test]
+fn threads_and_repetition_do_not_change_a_bit() {
+    let folder = Folder::new();
+    for integrator in ["fast", "reference"] {
+        for (name, options) in [("a", "--threads 1"), ("b", "--threads 2"), ("c", "--threads 7"), ("d", "")] {
+            let outputs = format!("-o {name}.png -o {name}.acc");
+            folder.done(&format!("render scene.toml --integrator {integrator} {options} {outputs}"));
+        }
+        for other in ["b", "c", "d"] {
+            same_film(&folder, "a.acc", &format!("{other}.acc"));
+            assert!(folder.read("a.png") == folder.read(&format!("{other}.png")), "{integrator} {other}");
+        }
+    }
+    folder.done("render scene.toml --seed 1 -o a.acc");
+    assert!(folder.accumulation("a.acc").film != folder.accumulation("b.acc").film);
+}
+
+#[test]
+fn merged_parts_are_the_whole_and_make_the_same_picture() {
+    let folder = Folder::new();
+    folder.done("render scene.toml --samples 0..8 -o a.acc");
+    folder.done("render scene.toml --samples 8..16 -o b.acc");
+    folder.done("render scene.toml --spp 16 -o whole.acc -o whole.png");
+    folder.done("merge b.acc a.acc -o merged.acc -o merged.png");
+    same_film(&folder, "whole.acc", "merged.acc");
+    assert!(pixels(&folder, "whole.acc") == pixels(&folder, "merged.acc"));
+    assert!(folder.read("whole.png") == folder.read("merged.png"));
+
+    folder.done("render scene.toml --samples 8..16 --seed 3 -o seed.acc");
+    folder.done("render scene.toml --samples 8..16 --set volume.0.mu_t=3 -o scene.acc");
+    for (other, word) in [("a.acc", "0..8"), ("seed.acc", "seed"), ("scene.acc", "scene")] {
+        let run = folder.run(&format!("merge a.acc {other} -o refused.exr"));
+        assert!(run.code == Some(1) && run.error().contains(word), "{}", run.err);
+    }
+    assert!(!folder.path("refused.exr").exists());
+}
+
+#[test]
+fn pictures_of_different_size_are_not_compared() {
+    let folder = Folder::new();
+    folder.done("render scene.toml -o a.exr");
+    folder.done("render scene.toml --resolution 8x8 -o b.exr");
+    let run = folder.run("diff a.exr b.exr");
+    assert_eq!(run.code, Some(1));
+    assert!(["a.exr", "b.exr", "32x24", "8x8"].iter().all(|word| run.error().contains(word)), "{}", run.err);
+}
+
+#[test]
+fn stop_rules_stop() {
+    let folder = Folder::new();
+    folder.done("render scene.toml --error 10% -o error.json");
+    let summary: Value = serde_json::from_slice(&folder.read("error.json")).unwrap();
+    let error = summary["median_relative_error"].as_f64().unwrap();
+    assert!(error <= 0.1, "{summary}");
+    folder.done("render scene.toml --error 0.0001% --spp 20 -o spp.acc");
+    assert_eq!(folder.accumulation("spp.acc").film.complete().count(), 20);
+    // An error of a millionth takes days: only the time can have stopped it.
+    folder.done("render scene.toml --error 0.0001% --time 0.2s -o time.acc");
+    assert!(folder.accumulation("time.acc").film.complete().count() > 0);
+}
+
+#[test]
+fn progress_in_json_is_an_object_a_line() {
+    let folder = Folder::new();
+    let run = folder.done("render scene.toml --progress json -o a.png");
+    let lines: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    for key in ["samples", "seconds", "rate", "error", "time_left"] {
+        assert!(lines.iter().all(|line| line.get(key).is_some()), "{key}");
+    }
+    assert_eq!(lines.last().unwrap()["samples"], 4.0);
+}
+
+#[test]
+fn a_printed_scene_is_the_same_scene() {
+    let folder = Folder::new();
+    let changes = "--set volume.0.mu_t=3 --resolution 20x10 --seed 5";
+    folder.write("printed.toml", folder.done(&format!("render scene.toml {changes} --print-scene")).out);
+    folder.done(&format!("render scene.toml {changes} -o a.acc"));
+    folder.done("render printed.toml -o b.acc");
+    same_film(&folder, "a.acc", "b.acc");
+    let hash = |name: &str| folder.accumulation(name).metadata.scene_hash;
+    assert_eq!(hash("a.acc"), hash("b.acc"));
+
+    let Some(volumes) = shared_volumes() else { return };
+    let volume = volumes.join("buckyball.raw");
+    let raw = format!("{} --raw-shape 32x32x32 --raw-type uint8 --resolution 24x16", volume.display());
+    folder.write("raw.toml", folder.done(&format!("render {raw} --print-scene")).out);
+    folder.done(&format!("render {raw} --spp 1 -o raw.acc"));
+    folder.done("render raw.toml --spp 1 -o printed.acc");
+    same_film(&folder, "raw.acc", "printed.acc");
+    assert_eq!(hash("raw.acc"), hash("printed.acc"));
+}
+
+#[test]
+fn outputs_are_named_after_the_input_and_nothing_else_is_left() {
+    let folder = Folder::new();
+    let run = folder.done("render scene.toml");
+    assert_eq!(folder.names(), ["scene.exr", "scene.png", "scene.toml"]);
+    assert!(run.err.contains("wrote scene.exr\nwrote scene.png"), "{}", run.err);
+}
+
+/// Samples that take many minutes: only an interruption ends them, or the time if a test fails.
+#[cfg(unix)]
+const LONG: &str = "render scene.toml --resolution 160x90 --spp 100000 --time 60s";
+
+#[cfg(unix)]
+fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args([name, &id]).status().unwrap().success());
+}
+
+/// Starts a long render and sends `name` once it has reported its progress `reports` times: the first comes when it
+/// begins, the others half a second apart.
+#[cfg(unix)]
+fn interrupt(folder: &Folder, options: &str, reports: usize, name: &str) -> Option<i32> {
+    let mut command = folder.command(&format!("{LONG} {options} --progress json"));
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    assert_eq!(lines.take(reports).filter(Result::is_ok).count(), reports);
+    signal(&child, name);
+    child.wait().unwrap().code()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_render_saves_what_there_is_and_goes_on_from_it_to_the_same_bits() {
+    let folder = Folder::new();
+    let saved = || folder.path("check.acc").exists().then(|| folder.accumulation("check.acc").film);
+    for reports in [1, 2] {
+        let code = interrupt(&folder, "-o part.exr -o part.acc --checkpoint check.acc", reports, "-INT");
+        assert_eq!(code, Some(130));
+        let part = saved();
+        // A first pass of which no tile was done leaves nothing to save.
+        assert!(part.is_some() || reports == 1);
+        if let Some(part) = &part {
+            assert!(part.mean_sample_count() > 0.0 && folder.path("part.exr").exists());
+            assert!(*part == folder.accumulation("part.acc").film);
+        }
+        // Killed while it goes on, without a chance to save: the checkpoint stays whole.
+        let code = interrupt(&folder, "-o part.exr --checkpoint check.acc --resume", reports, "-KILL");
+        assert!(code.is_none() && saved() == part);
+
+        // Beyond the end of the pass that was interrupted, which some tiles may have reached.
+        let end = part.map_or(0, |part| part.complete().count()) + 20;
+        let size = format!("render scene.toml --resolution 160x90 --spp {end}");
+        folder.done(&format!("{size} -o resumed.acc --checkpoint check.acc --resume"));
+        folder.done(&format!("{size} -o whole.acc"));
+        same_film(&folder, "resumed.acc", "whole.acc");
+        std::fs::remove_file(folder.path("check.acc")).unwrap();
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_scene_is_refused() {
+    let folder = Folder::new();
+    folder.done("render scene.toml --checkpoint check.acc -o a.png");
+    for other in ["--seed 2", "--resolution 9x9", "--set volume.0.mu_t=1", "--integrator reference"] {
+        let run = folder.run(&format!("render scene.toml {other} --checkpoint check.acc --resume -o a.png"));
+        assert!(
+            run.code == Some(1) && run.error().contains("check.acc: is of another"),
+            "{other}: {}",
+            run.err
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_termination_request_saves_as_well() {
+    let folder = Folder::new();
+    assert_eq!(interrupt(&folder, "-o part.acc", 2, "-TERM"), Some(130));
+    assert!(folder.accumulation("part.acc").film.mean_sample_count() > 0.0);
+}
