@@ -17,9 +17,10 @@ const WIDTH: usize = 16;
 /// Weight below which a shadow ray plays roulette; survivors get this weight.
 const ROULETTE_WEIGHT: f32 = 0.2;
 
-/// How far, in voxels, a point is carried into the next cell: well above f32's resolution at the grid's far corner
-/// `max`. Inside that sliver the next cell's majorant is used for the last cell's values, which differ by the
-/// slope of the field over so short a way.
+/// How far, in voxels, a point is carried into the next cell along each axis: well above f32's resolution at the
+/// grid's far corner `max`. Inside that sliver the next cell's majorant is used for the last cell's values, which
+/// differ by the slope of the field over so short a way. Carried along the ray instead, one that runs nearly in the
+/// plane of a face would not get across it and crawl.
 pub(super) fn nudge(max: glam::Vec3) -> f32 {
     (max.max_element() * (1.0 / (1 << 20) as f32)).max(1.0 / 4096.0)
 }
@@ -83,11 +84,11 @@ fn step_group(rays: &mut Rays, base: usize, volumes: &[FastVolume], tentative: &
     let (dx, dy, dz) = (group(&rays.dx, base), group(&rays.dy, base), group(&rays.dz, base));
 
     let (mut x, mut y, mut z) = ([0_i32; WIDTH], [0_i32; WIDTH], [0_i32; WIDTH]);
+    let (ax, ay, az) = (group(&rays.ax, base), group(&rays.ay, base), group(&rays.az, base));
     for l in 0..WIDTH {
-        let inside = t[l] + nudge[l];
-        x[l] = (ox[l] + inside * dx[l]) as i32;
-        y[l] = (oy[l] + inside * dy[l]) as i32;
-        z[l] = (oz[l] + inside * dz[l]) as i32;
+        x[l] = (ax[l] + t[l] * dx[l]) as i32;
+        y[l] = (ay[l] + t[l] * dy[l]) as i32;
+        z[l] = (az[l] + t[l] * dz[l]) as i32;
     }
 
     let (mut cx, mut cy, mut cz) = ([0.0_f32; WIDTH], [0.0_f32; WIDTH], [0.0_f32; WIDTH]);

@@ -243,11 +243,14 @@ impl<'a> Engine<'a> {
                     }
                     let rays = &mut *self.rays;
                     [rays.ox[slot], rays.oy[slot], rays.oz[slot]] = origin.to_array();
+                    let nudge = march::nudge(grid.max);
+                    let ahead = origin + direction.signum() * nudge;
+                    [rays.ax[slot], rays.ay[slot], rays.az[slot]] = ahead.to_array();
                     [rays.dx[slot], rays.dy[slot], rays.dz[slot]] = direction.to_array();
                     [rays.ix[slot], rays.iy[slot], rays.iz[slot]] = inverse.to_array();
                     rays.t[slot] = enter;
                     rays.end[slot] = leave;
-                    rays.nudge[slot] = march::nudge(grid.max) / direction.abs().max_element();
+                    rays.nudge[slot] = nudge / direction.abs().max_element();
                     rays.mu_t[slot] = volume.mu_t;
                     rays.volume[slot] = number as u32;
                     rays.tau[slot] = rays.random[slot].exponential();

@@ -15,6 +15,11 @@ pub(super) struct Rays {
     pub ox: [f32; POOL],
     pub oy: [f32; POOL],
     pub oz: [f32; POOL],
+    /// The origin, a small distance further along each axis: where the ray is in a face of cells, or nearly, the cell
+    /// ahead of it is looked up.
+    pub ax: [f32; POOL],
+    pub ay: [f32; POOL],
+    pub az: [f32; POOL],
     pub dx: [f32; POOL],
     pub dy: [f32; POOL],
     pub dz: [f32; POOL],
@@ -28,7 +33,7 @@ pub(super) struct Rays {
     pub end: [f32; POOL],
     /// Optical thickness under the majorant up to the next tentative collision.
     pub tau: [f32; POOL],
-    /// A small distance that carries a point on a cell's face into the next cell.
+    /// The least step: the small distance of `ax` along the axis that the ray is fastest on.
     pub nudge: [f32; POOL],
     /// μt at density 1 of the volume.
     pub mu_t: [f32; POOL],
@@ -49,6 +54,9 @@ impl Rays {
             ox: zero,
             oy: zero,
             oz: zero,
+            ax: zero,
+            ay: zero,
+            az: zero,
             dx: [1.0; POOL],
             dy: [1.0; POOL],
             dz: [1.0; POOL],

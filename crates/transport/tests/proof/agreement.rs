@@ -285,8 +285,8 @@ fn grid_scene(folder: &Path, file: &str, mu_t: u32, storage: &str) -> Scene {
     )
 }
 
-/// Rays along the grid's axes, from inside it, and far from the origin, where single precision alone would leave
-/// nothing of the scene.
+/// Rays along the axes and in the planes of cell faces, from inside, far from the origin, where single precision leaves
+/// nothing of the scene by itself.
 #[test]
 fn rays_along_the_axes_from_inside_a_grid_far_away() {
     let folder = tempfile::tempdir().expect("a folder for test files");
