@@ -34,11 +34,13 @@ impl BrickGrid {
         };
         let table = DVec3::new(self.origin[0].into(), self.origin[1].into(), self.origin[2].into());
         let local_origin = origin - table;
-        // A point this little further along the ray decides which cell comes next.
-        let nudge = 1e-9 / direction.abs().max_element();
+        // A point this little further along each axis, in voxels, decides which cell comes next. Further along the
+        // ray instead, one that runs nearly in the plane of a face would not get across it and crawl.
+        let nudge = 1e-9_f64.max(4.0 * f64::EPSILON * (self.domain[1] - table).max_element());
+        let ahead = local_origin + direction.signum() * nudge;
+        let least_step = nudge / direction.abs().max_element();
         while t < end {
-            let inside = local_origin + direction * (t + nudge.max(t.abs() * 1e-15));
-            let voxel = inside.max(DVec3::ZERO).as_uvec3().to_array();
+            let voxel = (ahead + direction * t).max(DVec3::ZERO).as_uvec3().to_array();
             let cell = self.cell(voxel);
             let edge = f64::from(1_u32 << cell.shift);
             let mut exit = end;
@@ -48,7 +50,7 @@ impl BrickGrid {
                     exit = exit.min((far - local_origin[axis]) * inverse[axis]);
                 }
             }
-            let exit = exit.max(t + nudge).min(end);
+            let exit = exit.max(t + least_step).min(end);
             visit(Segment { start: t, end: exit, bounds: self.cell_bounds(voxel) })?;
             t = exit;
         }
