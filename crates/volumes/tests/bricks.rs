@@ -136,12 +136,12 @@ fn segments_cover_the_part_of_the_ray_inside_the_domain() {
 /// A direction such as (1, cos 90°, 0) in floating point leaves the plane of a face by 6e-17 a voxel.
 #[test]
 fn a_ray_nearly_in_the_plane_of_a_face_does_not_crawl() {
-    let leaf = |x| Leaf { origin: [x, 0, 0], active: [u64::MAX; 8] };
+    let leaf = |x, across| Leaf { origin: [x, across, across], active: [u64::MAX; 8] };
     let tree = Tree {
         background: 0.0,
         tiles: vec![],
-        leaves: (0..32).map(|i| leaf(8 * i)).collect(),
-        leaf_values: (0..32 * 512).map(|i| (i % 7) as f32).collect(),
+        leaves: (0..64).map(|i| leaf(i / 2 * 8, i % 2 * 8)).collect(),
+        leaf_values: (0..64 * 512).map(|i| (i % 7) as f32).collect(),
     };
     let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
     for slope in [6e-17, -6e-17, 1e-12, -1e-12] {
