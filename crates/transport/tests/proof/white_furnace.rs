@@ -4,6 +4,7 @@
 //! function. Without next-event estimation each path carries exactly 1; with it, only the mean is 1, and every
 //! factor of it (transmittance, phase function, densities, weights) must be right.
 
+use tyndall_film::Estimate;
 use tyndall_scene::Scene;
 use tyndall_scene::description::{ImageFilter, Integrator};
 
@@ -90,8 +91,8 @@ const REGION: u32 = 5;
 
 /// Every region within its standard error and the mean of the picture within its own, each at a level of 1e-4 for
 /// the picture; and that standard error is small enough to say something.
-fn assert_white_on_average(name: &str, scene: &Scene, integrator: Integrator) {
-    let film = render(scene, integrator, 2, 0..128);
+fn assert_white_on_average(name: &str, scene: &Scene, integrator: Integrator, seed: u64) -> Estimate {
+    let film = render(scene, integrator, seed, 0..128);
     let regions = 20 / REGION;
     let limit = two_sided_quantile(1e-4 / f64::from(regions * regions));
     for region in 0..regions * regions {
@@ -109,17 +110,34 @@ fn assert_white_on_average(name: &str, scene: &Scene, integrator: Integrator) {
     let z = (mean.mean - 1.0) / mean.standard_error;
     assert!(z.abs() < two_sided_quantile(1e-4), "{name}, {integrator:?}: the mean is {mean:?}, z = {z}");
     assert!(mean.standard_error < 6e-3, "{name}, {integrator:?}: {mean:?} says nothing");
+    mean
+}
+
+/// The mean of all pictures together, which shows an error that each alone would hide; at a level of 1e-4.
+fn assert_white_together(means: &[Estimate], integrator: Integrator) {
+    let off: f64 = means.iter().map(|mean| mean.mean - 1.0).sum();
+    let error = means.iter().map(|mean| mean.standard_error.powi(2)).sum::<f64>().sqrt();
+    eprintln!("{integrator:?}: off by {} +- {}", off / means.len() as f64, error / means.len() as f64);
+    assert!((off / error).abs() < two_sided_quantile(1e-4), "{integrator:?}: {off} +- {error}");
+    assert!(error < 1e-3 * means.len() as f64, "{integrator:?}: {off} +- {error} says nothing");
 }
 
 #[test]
 fn next_event_estimation_and_its_weights_keep_a_white_medium_white() {
-    for phase in PHASES {
-        for (name, scene) in furnaces(phase) {
-            let scene = with_next_event(scene, &[1.0]);
-            for integrator in BOTH {
-                assert_white_on_average(&format!("{name}, {phase}"), &scene, integrator);
-            }
-        }
+    let all: Vec<(String, Scene)> = PHASES
+        .into_iter()
+        .flat_map(|phase| {
+            furnaces(phase).into_iter().map(move |(name, scene)| (format!("{name}, {phase}"), scene))
+        })
+        .map(|(name, scene)| (name, with_next_event(scene, &[1.0])))
+        .collect();
+    for integrator in BOTH {
+        // Each with a seed of its own, so that their errors are independent.
+        let means: Vec<Estimate> = (1000..)
+            .zip(&all)
+            .map(|(seed, (name, scene))| assert_white_on_average(name, scene, integrator, seed))
+            .collect();
+        assert_white_together(&means, integrator);
     }
 }
 
@@ -140,7 +158,7 @@ fn lights_that_add_up_to_an_even_one_keep_a_white_medium_white() {
         scene.lights = vec![image(checks.clone(), filter), rest, image(Vec::clone(&others), filter)];
         let scene = with_next_event(scene, &[0.2, 0.3, 0.5]);
         for integrator in BOTH {
-            assert_white_on_average(&format!("{filter:?}"), &scene, integrator);
+            assert_white_on_average(&format!("{filter:?}"), &scene, integrator, 2);
         }
     }
 }
