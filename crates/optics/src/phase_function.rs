@@ -6,8 +6,8 @@
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A phase function of cos θ alone.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A phase function.
+#[derive(Debug, Clone, PartialEq)]
 pub enum PhaseFunction {
     /// 1/(4π).
     Isotropic,
@@ -20,8 +20,14 @@ pub enum PhaseFunction {
 }
 
 impl PhaseFunction {
-    /// Value in 1/sr, which is also the density with which [`PhaseFunction::sample`] gives that direction.
-    pub fn value(&self, cos_theta: f64) -> f64 {
+    /// Value in 1/sr for light that travels along the unit vector `before` and then along `after`, which is also the
+    /// density with which [`PhaseFunction::sample`] gives that direction.
+    pub fn value(&self, before: DVec3, after: DVec3) -> f64 {
+        self.value_at_cosine(before.dot(after))
+    }
+
+    /// Value in 1/sr at cos θ.
+    pub fn value_at_cosine(&self, cos_theta: f64) -> f64 {
         match *self {
             PhaseFunction::Isotropic => 0.25 / PI,
             PhaseFunction::HenyeyGreenstein { g } => {
@@ -89,7 +95,7 @@ mod tests {
             .map(|i| {
                 let v = (i as f64 + 0.5) / n as f64 * end;
                 let cos = 1.0 - 2.0 * v * v;
-                f(cos) * phase.value(cos) * TAU * 4.0 * v * end / n as f64
+                f(cos) * phase.value_at_cosine(cos) * TAU * 4.0 * v * end / n as f64
             })
             .sum()
     }

@@ -8,7 +8,7 @@ use tyndall_volumes::BrickGrid;
 use crate::Ray;
 
 /// What a medium does to light where its density is 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
     /// Extinction coefficient μt, 1/scene unit.
     pub mu_t: f64,

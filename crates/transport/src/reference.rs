@@ -58,7 +58,7 @@ pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
         layers.add_in_scattered(scatterings, throughput * direct);
 
         let onward = medium.phase_function.sample(ray.direction, [random.f64(), random.f64()]);
-        phase_pdf = Some(medium.phase_function.value(ray.direction.dot(onward)));
+        phase_pdf = Some(medium.phase_function.value(ray.direction, onward));
         ray = Ray { origin: position, direction: onward };
     }
     layers.into_sample()
@@ -100,7 +100,7 @@ fn next_event(scene: &Scene, position: DVec3, before: DVec3, volume: &Volume, ra
         return DVec3::ZERO;
     };
     let sample = light.sample(position, [random.f64(), random.f64()]);
-    let phase = volume.medium.phase_function.value(before.dot(sample.toward));
+    let phase = volume.medium.phase_function.value(before, sample.toward);
     let light_pdf = probability * sample.pdf;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + phase) };
     let unshadowed = sample.radiance_over_pdf * (phase * weight / probability);

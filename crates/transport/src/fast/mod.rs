@@ -136,7 +136,6 @@ impl<'a> Engine<'a> {
     }
 
     /// Takes the path in `slot` through what happens to it until its ray marches again.
-    // Not inlined everywhere it is called: once in the loop of either list is enough.
     #[inline(always)]
     fn proceed(&mut self, slot: usize, mut next: Next) {
         loop {
