@@ -267,8 +267,8 @@ mod tests {
     fn the_integral_of_an_atmosphere_is_that_of_a_fine_quadrature_and_is_inverted() {
         let density = Density::Atmosphere { bottom: 1.0, top: f64::INFINITY, scale_height: 2.0 };
         let atmosphere = homogeneous(density, DAffine3::IDENTITY);
-        for slope in [-0.9, -1e-3, -1e-12, 0.0, 1e-12, 1e-3, 0.9] {
-            let direction = DVec3::new((1.0 - slope * slope as f64).sqrt(), slope, 0.0);
+        for slope in [-0.9_f64, -1e-3, -1e-12, 0.0, 1e-12, 1e-3, 0.9] {
+            let direction = DVec3::new((1.0 - slope * slope).sqrt(), slope, 0.0);
             let ray = Ray { origin: DVec3::new(0.0, 5.0, 0.0), direction };
             let (start, end) = (0.5, 3.5);
             let steps = 3000;
