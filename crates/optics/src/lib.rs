@@ -3,9 +3,11 @@
 
 #![forbid(unsafe_code)]
 
+pub mod albedo_inversion;
 pub mod cie;
 pub mod phase_function;
 pub mod planck;
+pub mod presets;
 mod spectrum;
 pub mod uplift;
 
