@@ -4,4 +4,4 @@
 
 pub mod phase_function;
 
-pub use phase_function::PhaseFunction;
+pub use phase_function::{PhaseFunction, SpectralPhase};
