@@ -10,7 +10,8 @@ use crate::Ray;
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient μt, 1/scene unit.
+    /// Extinction coefficient μt, 1/scene unit; of oriented particles, the greatest over all directions, see
+    /// [`Medium::mu_t_along`].
     pub mu_t: f64,
     /// Single-scattering albedo μs/μt, linear RGB in 0…1.
     pub albedo: DVec3,
@@ -18,6 +19,13 @@ pub struct Medium {
     pub phase_function: PhaseFunction,
     /// Emitted radiance Le; the source term of the volume rendering equation is μa·Le.
     pub emission: DVec3,
+}
+
+impl Medium {
+    /// Extinction coefficient for light that travels along the unit vector `direction`, or against it.
+    pub fn mu_t_along(&self, direction: DVec3) -> f64 {
+        self.mu_t * self.phase_function.projected_area(direction)
+    }
 }
 
 /// Where the density of a volume comes from, in the volume's local coordinates.

@@ -7,8 +7,8 @@
 use tyndall_lanes::Random;
 use tyndall_scene::{Ray, Volume};
 
-pub(super) fn sample(volume: &Volume, local: &Ray, end: f64, random: &mut Random) -> Option<f64> {
+pub(super) fn sample(volume: &Volume, mu_t: f64, local: &Ray, end: f64, random: &mut Random) -> Option<f64> {
     let (enter, leave) = volume.interval(local, end)?;
-    let t = volume.distance_of_integral(local, enter, random.exponential_f64() / volume.medium.mu_t);
+    let t = volume.distance_of_integral(local, enter, random.exponential_f64() / mu_t);
     (t < leave).then_some(t)
 }

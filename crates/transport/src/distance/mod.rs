@@ -12,8 +12,9 @@ use tyndall_scene::{Density, Ray, Volume};
 /// The distance of the first collision with `volume` along `ray` before `end`, if there is one.
 pub fn sample_distance(volume: &Volume, ray: &Ray, end: f64, random: &mut Random) -> Option<f64> {
     let local = volume.local_ray(ray);
+    let mu_t = volume.medium.mu_t_along(ray.direction);
     match &volume.density {
-        Density::Grid(grid) => delta_tracking::sample(grid, volume.medium.mu_t, &local, end, random),
-        _ => closed_form::sample(volume, &local, end, random),
+        Density::Grid(grid) => delta_tracking::sample(grid, mu_t, &local, end, random),
+        _ => closed_form::sample(volume, mu_t, &local, end, random),
     }
 }

@@ -5,7 +5,7 @@
 
 use tyndall_scene::{Ray, Volume};
 
-pub(super) fn transmittance(volume: &Volume, local: &Ray, end: f64) -> f64 {
+pub(super) fn transmittance(volume: &Volume, mu_t: f64, local: &Ray, end: f64) -> f64 {
     let integral = volume.interval(local, end).and_then(|within| volume.density_integral(local, within));
-    integral.map_or(1.0, |integral| (-volume.medium.mu_t * integral).exp())
+    integral.map_or(1.0, |integral| (-mu_t * integral).exp())
 }

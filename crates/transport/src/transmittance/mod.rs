@@ -11,8 +11,9 @@ use tyndall_scene::{Density, Ray, Volume};
 /// An unbiased estimate of the transmittance of `volume` along `ray` from 0 to `end`.
 pub fn estimate_transmittance(volume: &Volume, ray: &Ray, end: f64, random: &mut Random) -> f64 {
     let local = volume.local_ray(ray);
+    let mu_t = volume.medium.mu_t_along(ray.direction);
     match &volume.density {
-        Density::Grid(grid) => ratio_tracking::estimate(grid, volume.medium.mu_t, &local, end, random),
-        _ => closed_form::transmittance(volume, &local, end),
+        Density::Grid(grid) => ratio_tracking::estimate(grid, mu_t, &local, end, random),
+        _ => closed_form::transmittance(volume, mu_t, &local, end),
     }
 }
