@@ -11,8 +11,8 @@ use tyndall_volumes::{
 };
 
 use crate::description::{
-    AtmosphereShape, GridFilter, GridMeaning, MediumDescription, PhaseDescription, ProceduralDescription,
-    RawType, Storage, VolumeDescription, VolumeSource,
+    AtmosphereShape, Coefficients, GridFilter, GridMeaning, MediumDescription, PhaseDescription,
+    ProceduralDescription, RawType, Storage, VolumeDescription, VolumeSource,
 };
 use crate::light::build_lights;
 use crate::ready::light_probabilities;
@@ -133,7 +133,8 @@ fn ready_medium(description: &MediumDescription, name: &str) -> Result<Medium, S
         PhaseDescription::Hg { g } => PhaseFunction::HenyeyGreenstein { g },
     };
     let emission = description.emission.map_or(DVec3::ZERO, |emission| emission.channels());
-    Ok(Medium { mu_t: coefficients.mu_t, albedo: coefficients.albedo, phase_function, emission })
+    let Coefficients { mu_t, albedo } = coefficients;
+    Ok(Medium { mu_t, albedo, phase_function, emission, chromatic: None })
 }
 
 /// Reads the grid that the description names, or the one that is most likely meant.
