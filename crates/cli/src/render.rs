@@ -120,6 +120,9 @@ pub fn run(args: Args) -> miette::Result<Done> {
     for note in input.notes.iter().chain(&built.notes) {
         tell(format!("note: {note}"));
     }
+    if built.scene.is_chromatic() {
+        tell("note: some extinction or phase function depends on colour: the spectral integrator renders");
+    }
     let mut picture = open_picture(&args, description, &input.folder, film)?;
     let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
     let end = render(&args, &built.scene, description, &plan, &mut picture)?;

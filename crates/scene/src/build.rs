@@ -10,8 +10,8 @@ use tyndall_volumes::{
 };
 
 use crate::description::{
-    AtmosphereShape, GridFilter, GridMeaning, MediumDescription, ProceduralDescription, RawType, Storage,
-    VolumeDescription, VolumeSource,
+    AtmosphereShape, Coefficients, GridFilter, GridMeaning, MediumDescription, ProceduralDescription,
+    RawType, Storage, VolumeDescription, VolumeSource,
 };
 use crate::light::build_lights;
 use crate::phase::{build_phase, grey_phase};
@@ -136,7 +136,8 @@ fn ready_medium(
     let (phase_function, note) = grey_phase(&build_phase(&description.phase, folder)?);
     notes.extend(note.map(|note| format!("{name}: {note}")));
     let emission = description.emission.map_or(DVec3::ZERO, |emission| emission.channels());
-    Ok(Medium { mu_t: coefficients.mu_t, albedo: coefficients.albedo, phase_function, emission })
+    let Coefficients { mu_t, albedo } = coefficients;
+    Ok(Medium { mu_t, albedo, phase_function, emission, chromatic: None })
 }
 
 /// Reads the grid that the description names, or the one that is most likely meant.

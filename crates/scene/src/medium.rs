@@ -10,8 +10,8 @@ use crate::Ray;
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient μt, 1/scene unit; of oriented particles, the greatest over all directions, see
-    /// [`Medium::mu_t_along`].
+    /// Extinction coefficient μt, 1/scene unit: of oriented particles, the greatest over all directions (see
+    /// [`Medium::mu_t_along`]); of a chromatic medium, the mean of its channels.
     pub mu_t: f64,
     /// Single-scattering albedo μs/μt, linear RGB in 0…1.
     pub albedo: DVec3,
@@ -19,6 +19,17 @@ pub struct Medium {
     pub phase_function: PhaseFunction,
     /// Emitted radiance Le; the source term of the volume rendering equation is μa·Le.
     pub emission: DVec3,
+    /// What depends on colour beside albedo and emission; it takes the place of `mu_t` and `phase_function`.
+    pub chromatic: Option<Arc<ChromaticMedium>>,
+}
+
+/// What of a medium depends on colour, beside its albedo and emission.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChromaticMedium {
+    /// Extinction coefficient μt in red, green and blue, 1/scene unit.
+    pub mu_t: DVec3,
+    /// Phase functions of red, green and blue, if they differ.
+    pub phase_functions: Option<[PhaseFunction; 3]>,
 }
 
 impl Medium {
@@ -244,6 +255,7 @@ mod tests {
             albedo: DVec3::ONE,
             phase_function: PhaseFunction::Isotropic,
             emission: DVec3::ZERO,
+            chromatic: None,
         };
         Volume { name: "test".into(), world_to_local, density, medium }
     }

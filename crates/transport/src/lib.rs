@@ -1,15 +1,18 @@
 //! How light moves: the reference path tracer of the volume rendering equation and the fast engine.
 //!
 //! `distance` and `transmittance` hold one estimator a file; `reference` puts them together as the equation reads;
-//! `fast` does the same with many paths at once. [`render_pass`] fills a film with either.
+//! `fast` does the same with many paths at once, `spectral` in media that depend on colour. [`render_pass`] fills a film
+//! with any of them.
 
 mod distance;
 mod fast;
 mod reference;
 mod render;
+mod spectral;
 mod transmittance;
 
 pub use distance::sample_distance;
 pub use reference::trace;
 pub use render::{Control, Outcome, RenderOptions, render_pass};
+pub use spectral::SpectralScene;
 pub use transmittance::estimate_transmittance;
