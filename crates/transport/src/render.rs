@@ -10,6 +10,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
 
+use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::reference;
 
@@ -22,6 +23,8 @@ pub struct RenderOptions {
     pub seed: u64,
     /// Number of threads, at least 1.
     pub threads: usize,
+    /// Which estimators the reference integrator uses; the fast one has its own.
+    pub estimators: Estimators,
 }
 
 /// What a render tells and is told while it runs.
@@ -67,7 +70,7 @@ pub fn render_pass(
                 Integrator::Fast => {
                     fast::render_tiles(&fast_scene, &mut tiles, options.seed, &control.cancel)
                 }
-                Integrator::Reference => trace_tiles(scene, &mut tiles, options.seed, &control.cancel),
+                Integrator::Reference => trace_tiles(scene, &mut tiles, options, &control.cancel),
             };
             if !complete {
                 return;
@@ -124,7 +127,7 @@ fn sample_count(tile: &FilmTile) -> u64 {
 }
 
 /// The reference integrator over some tiles; `false` if cancelled.
-fn trace_tiles(scene: &Scene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
+fn trace_tiles(scene: &Scene, tiles: &mut [FilmTile], options: &RenderOptions, cancel: &AtomicBool) -> bool {
     for tile in tiles {
         let rect = tile.rect();
         for y in rect.y..rect.y + rect.height {
@@ -134,11 +137,11 @@ fn trace_tiles(scene: &Scene, tiles: &mut [FilmTile], seed: u64, cancel: &Atomic
                 }
                 let pixel = u64::from(y) * u64::from(scene.resolution[0]) + u64::from(x);
                 for sample in tile.samples() {
-                    let mut random = Random::new(seed, pixel, sample);
+                    let mut random = Random::new(options.seed, pixel, sample);
                     let film_u = [random.f64(), random.f64()];
                     let lens_u = [random.f64(), random.f64()];
                     let ray = scene.camera.ray([x, y], film_u, lens_u);
-                    tile.add(x, y, &reference::trace(scene, ray, &mut random));
+                    tile.add(x, y, &reference::trace_with(scene, options.estimators, ray, &mut random));
                 }
             }
         }
