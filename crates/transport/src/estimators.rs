@@ -7,6 +7,7 @@
 use glam::DVec3;
 use tyndall_lanes::Random;
 use tyndall_scene::{Density, Light, Ray, Scene, Volume};
+use tyndall_volumes::Filter;
 
 use crate::along_ray::{AlongRay, Lookups};
 use crate::distance::{DistanceSampler, Flight, sample_distance};
@@ -135,10 +136,10 @@ fn validate(properties: &Properties, scene: &Scene) -> Result<(), Reason> {
     for need in properties.needs {
         match need {
             Need::ClosedForm => {
-                let interpolated = |volume: &&Volume| matches!(volume.density, Density::Grid(_));
+                let interpolated = |volume: &&Volume| matches!(&volume.density, Density::Grid(grid) if grid.filter() == Filter::Trilinear);
                 if let Some(volume) = scene.volumes.iter().find(interpolated) {
                     return Err(Reason(format!(
-                        "{name}: there is no closed form for the grid of the volume `{}`; take regular-tracking, which \
+                        "{name}: there is no closed form for the interpolated grid of the volume `{}`; take regular-tracking, which \
                          is as exact",
                         volume.name
                     )));

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use tyndall_scene::{Density, Ray, Volume};
-use tyndall_volumes::BrickGrid;
+use tyndall_volumes::{BrickGrid, Filter};
 
 use super::bounding::Cell;
 use super::voxels::voxel_intervals;
@@ -31,8 +31,8 @@ pub(super) struct Stretch<'a> {
 pub(super) enum Extinction<'a> {
     /// A function of the distance.
     Formula(Profile),
-    /// mu_t times the trilinearly filtered values of a grid, along the ray `local` in its index coordinates.
-    Trilinear {
+    /// mu_t times the filtered values of a grid, along the ray `local` in the coordinates of its filter.
+    Grid {
         grid: &'a BrickGrid,
         mu_t: f64,
         local: Ray,
@@ -54,11 +54,16 @@ impl<'a> Stretch<'a> {
                 start: range.0,
                 end: range.1,
                 source: 0,
-                extinction: Extinction::Trilinear { grid, mu_t, local, limit: end },
+                extinction: Extinction::Grid { grid, mu_t, local, limit: end },
                 pieces: 1,
             }),
             Density::Everywhere | Density::Box { .. } | Density::Sphere | Density::Slab { .. } => {
                 Self::opaque_at_the_end(Profile::Constant(mu_t), range)
+            }
+            Density::Atmosphere { bottom, scale_height, .. } => {
+                let logarithm = mu_t.ln() - (local.origin.y - bottom) / scale_height;
+                let rate = local.direction.y / scale_height;
+                Self::opaque_at_the_end(Profile::Exponential { logarithm, rate }, range)
             }
         }
     }
@@ -67,9 +72,9 @@ impl<'a> Stretch<'a> {
     fn opaque_at_the_end(profile: Profile, (start, end): (f64, f64)) -> Option<Self> {
         let mut end = profile.distance_at(start, OPAQUE).map_or(end, |t| end.min(t));
         let mut pieces = 1;
-        if let Profile::Exponential { at_zero, rate } = profile {
+        if let Profile::Exponential { logarithm, rate } = profile {
             if rate > 0.0 {
-                end = end.min((at_zero / (rate * NEGLIGIBLE)).ln() / rate);
+                end = end.min((logarithm - (rate * NEGLIGIBLE).ln()) / rate);
             }
             // Within a piece the extinction at most doubles.
             pieces = (rate.abs() * (end - start) / std::f64::consts::LN_2).ceil().clamp(1.0, 1e4) as u32;
@@ -105,7 +110,7 @@ impl<'a> Stretch<'a> {
                     visit(Cell { start, end, min, max })
                 })
             }
-            Extinction::Trilinear { grid, mu_t, local, limit } => {
+            Extinction::Grid { grid, mu_t, local, limit } => {
                 grid.segments(local.origin, local.direction, (0.0, *limit), |segment| {
                     let (min, max) = (f64::from(segment.bounds.min), f64::from(segment.bounds.max));
                     visit(Cell {
@@ -124,9 +129,7 @@ impl<'a> Stretch<'a> {
         self.cells(|cell| match &self.extinction {
             _ if cell.max <= 0.0 => ControlFlow::Continue(()),
             Extinction::Formula(_) => visit(cell.start, cell.end),
-            Extinction::Trilinear { local, .. } => {
-                voxel_intervals(local, 0.0, (cell.start, cell.end), &mut visit)
-            }
+            Extinction::Grid { local, .. } => voxel_intervals(local, (cell.start, cell.end), &mut visit),
         })
     }
 }
@@ -135,23 +138,27 @@ impl Extinction<'_> {
     pub fn mu_t(&self, t: f64) -> f64 {
         match self {
             Self::Formula(profile) => profile.mu_t(t),
-            Self::Trilinear { grid, mu_t, local, .. } => mu_t * grid.trilinear(local.at(t)),
+            Self::Grid { grid, mu_t, local, .. } => mu_t * grid.value(local.at(t)),
         }
     }
 
     pub fn has_closed_form(&self) -> bool {
         match self {
             Self::Formula(_) => true,
-            Self::Trilinear { .. } => false,
+            Self::Grid { grid, .. } => grid.filter() == Filter::Nearest,
         }
     }
 
     /// ∫ μt from `a` to `b` within a smooth interval. Between planes of voxel centres the trilinear field along a ray
-    /// is a cubic polynomial, for which the Gauss-Legendre rule of two points is exact.
+    /// is a cubic polynomial, for which the Gauss-Legendre rule of two points is exact; unfiltered it is constant.
     pub fn smooth_thickness(&self, a: f64, b: f64, lookups: &mut Lookups) -> f64 {
         match self {
             Self::Formula(profile) => profile.thickness(a, b),
-            Self::Trilinear { .. } => {
+            Self::Grid { grid, .. } if grid.filter() == Filter::Nearest => {
+                lookups.0 += 1;
+                (b - a) * self.mu_t(0.5 * (a + b))
+            }
+            Self::Grid { .. } => {
                 lookups.0 += 2;
                 let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
                 let offset = half / 3.0_f64.sqrt();
@@ -164,7 +171,7 @@ impl Extinction<'_> {
     pub fn distance_at(&self, a: f64, tau: f64) -> Option<f64> {
         match self {
             Self::Formula(profile) => profile.distance_at(a, tau),
-            Self::Trilinear { .. } => None,
+            Self::Grid { .. } => None,
         }
     }
 }

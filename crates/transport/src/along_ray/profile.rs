@@ -8,10 +8,10 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 pub enum Profile {
     /// The same everywhere.
     Constant(f64),
-    /// at_zero·exp(−rate·t): an atmosphere whose density falls exponentially with height, along any straight line.
+    /// exp(logarithm − rate·t): an atmosphere whose density falls exponentially with height, along any straight line.
     Exponential {
-        /// Extinction at t = 0.
-        at_zero: f64,
+        /// Natural logarithm of the extinction at t = 0, which itself may be too large for a number.
+        logarithm: f64,
         /// 1/length over which it falls by e; negative where it grows.
         rate: f64,
     },
@@ -40,7 +40,7 @@ impl Profile {
     pub fn mu_t(&self, t: f64) -> f64 {
         match *self {
             Self::Constant(mu_t) => mu_t,
-            Self::Exponential { at_zero, rate } => at_zero * (-rate * t).exp(),
+            Self::Exponential { logarithm, rate } => (logarithm - rate * t).exp(),
             Self::PiecewiseLinear(ref knots) => {
                 let after = knots.partition_point(|knot| knot.0 <= t);
                 match (after.checked_sub(1).map(|before| knots[before]), knots.get(after)) {
@@ -58,7 +58,7 @@ impl Profile {
     pub fn thickness(&self, a: f64, b: f64) -> f64 {
         match *self {
             Self::Constant(mu_t) => mu_t * (b - a),
-            Self::Exponential { rate: 0.0, at_zero } => at_zero * (b - a),
+            Self::Exponential { rate: 0.0, .. } => self.mu_t(a) * (b - a),
             Self::Exponential { rate, .. } => self.mu_t(a) * -(-rate * (b - a)).exp_m1() / rate,
             Self::PiecewiseLinear(ref knots) => {
                 let inside = knots.iter().map(|knot| knot.0).filter(|t| (a..b).contains(t));
@@ -82,7 +82,8 @@ impl Profile {
     /// so far.
     pub fn distance_at(&self, a: f64, tau: f64) -> Option<f64> {
         match *self {
-            Self::Constant(mu_t) | Self::Exponential { rate: 0.0, at_zero: mu_t } => {
+            Self::Constant(_) | Self::Exponential { rate: 0.0, .. } => {
+                let mu_t = self.mu_t(a);
                 (mu_t > 0.0).then(|| a + tau / mu_t)
             }
             Self::Exponential { rate, .. } => {

@@ -7,18 +7,17 @@ use std::ops::ControlFlow;
 
 use tyndall_scene::Ray;
 
-/// Visits the intervals of [start, end] between crossings of the planes at whole numbers plus `offset` in index
-/// coordinates: offset 0 are planes of voxel centres, ½ the faces between voxels.
+/// Visits the intervals of [start, end] between crossings of the planes at whole numbers: planes of voxel centres in the
+/// coordinates of the trilinear filter, faces between voxels in those without a filter.
 pub(super) fn voxel_intervals<B>(
     local: &Ray,
-    offset: f64,
     (start, end): (f64, f64),
     visit: &mut impl FnMut(f64, f64) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
-    let at_start = local.at(start) - offset;
+    let at_start = local.at(start);
     let mut planes = [0.0; 3];
     let mut crossings = [f64::INFINITY; 3];
-    let crossing = |axis: usize, plane: f64| (plane + offset - local.origin[axis]) / local.direction[axis];
+    let crossing = |axis: usize, plane: f64| (plane - local.origin[axis]) / local.direction[axis];
     for axis in 0..3 {
         let direction = local.direction[axis];
         if direction != 0.0 {
