@@ -6,13 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 use tyndall_optics::PhaseFunction;
 use tyndall_volumes::{
-    AxisOrder, BrickGrid, ByteOrder, Element, Grid, GridClass, GridSelection, GridValues, RawShape,
+    AxisOrder, BrickGrid, ByteOrder, Element, Filter, Grid, GridClass, GridSelection, GridValues, RawShape,
     ReadError, ReadRequest,
 };
 
 use crate::description::{
-    GridMeaning, MediumDescription, PhaseDescription, ProceduralDescription, RawType, Storage,
-    VolumeDescription, VolumeSource,
+    AtmosphereShape, GridFilter, GridMeaning, MediumDescription, PhaseDescription, ProceduralDescription,
+    RawType, Storage, VolumeDescription, VolumeSource,
 };
 use crate::light::build_lights;
 use crate::ready::light_probabilities;
@@ -83,7 +83,7 @@ fn build_volume(
             let grid = read_grid(description, &path, notes)?;
             grids.push((name.clone(), grid.name.clone()));
             let bricks = build_bricks(description, &grid, &path, notes)?;
-            (Density::Grid(Arc::new(bricks)), grid.index_to_world)
+            grid_density(bricks, &grid)
         }
         VolumeSource::Box(cuboid) => {
             let [min, max] = [cuboid.min, cuboid.max].map(DVec3::from_array);
@@ -96,10 +96,15 @@ fn build_volume(
         VolumeSource::Slab(slab) => {
             (Density::Slab { bottom: slab.bottom, top: slab.top }, DAffine3::IDENTITY)
         }
+        VolumeSource::Atmosphere(AtmosphereShape { bottom, top, scale_height }) => {
+            let top = top.unwrap_or(f64::INFINITY);
+            let atmosphere = Density::Atmosphere { bottom: *bottom, top, scale_height: *scale_height };
+            (atmosphere, DAffine3::IDENTITY)
+        }
         VolumeSource::Procedural(ProceduralDescription::Cumulus { seed, resolution, center, size }) => {
             let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size);
             let bricks = build_bricks(description, &grid, Path::new(&name), notes)?;
-            (Density::Grid(Arc::new(bricks)), grid.index_to_world)
+            grid_density(bricks, &grid)
         }
     };
     let local_to_world = to_scene * local_to_volume;
@@ -112,6 +117,12 @@ fn build_volume(
     }
     let medium = ready_medium(&description.medium, &name)?;
     Ok(Volume { name, world_to_local, density, medium })
+}
+
+/// The density, and its local coordinates in those of the volume.
+fn grid_density(bricks: BrickGrid, grid: &Grid) -> (Density, DAffine3) {
+    let to_index = DAffine3::from_translation(DVec3::splat(-bricks.filter().offset()));
+    (Density::Grid(Arc::new(bricks)), grid.index_to_world * to_index)
 }
 
 fn ready_medium(description: &MediumDescription, name: &str) -> Result<Medium, SceneError> {
@@ -242,7 +253,10 @@ fn build_bricks(
     if has_negative.get() {
         notes.push(format!("{}: negative values of `{}` count as 0", path.display(), grid.name));
     }
-    Ok(bricks)
+    Ok(bricks.with_filter(match description.filter.unwrap_or_default() {
+        GridFilter::Trilinear => Filter::Trilinear,
+        GridFilter::Nearest => Filter::Nearest,
+    }))
 }
 
 fn element(raw_type: RawType) -> Element {

@@ -26,8 +26,8 @@ pub use rgb::Rgb;
 pub use rules::Violation;
 pub use transform::{Scale, TransformDescription};
 pub use volume::{
-    BoxShape, GridMeaning, ProceduralDescription, RawType, SlabShape, SphereShape, Storage,
-    VolumeDescription, VolumeSource,
+    AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,
+    SphereShape, Storage, VolumeDescription, VolumeSource,
 };
 
 use schemars::JsonSchema;

@@ -117,7 +117,13 @@ fn volume(found: &mut Findings, volume: &VolumeDescription) {
         VolumeSource::Slab(shape) if shape.bottom >= shape.top => {
             found.report("slab", "`slab` is empty: `bottom` must be less than `top`");
         }
+        VolumeSource::Atmosphere(shape) if shape.top.is_some_and(|top| shape.bottom >= top) => {
+            found.report("atmosphere", "`atmosphere` is empty: `bottom` must be less than `top`");
+        }
         _ => {}
+    }
+    if !matches!(source, VolumeSource::File(_) | VolumeSource::Procedural(_)) && volume.filter.is_some() {
+        found.report("filter", "`filter` is for volumes with voxels: remove it");
     }
     if !matches!(source, VolumeSource::File(_)) {
         for (key, is_given) in [

@@ -24,7 +24,7 @@ pub(super) fn sample(grid: &BrickGrid, mu_t: f64, local: &Ray, end: f64, random:
             if t >= segment.end {
                 return ControlFlow::Continue(());
             }
-            let extinction = mu_t * grid.trilinear(local.at(t));
+            let extinction = mu_t * grid.value(local.at(t));
             if random.f64() * majorant < extinction {
                 return ControlFlow::Break(t);
             }

@@ -14,6 +14,6 @@ pub fn sample_distance(volume: &Volume, ray: &Ray, end: f64, random: &mut Random
     let local = volume.local_ray(ray);
     match &volume.density {
         Density::Grid(grid) => delta_tracking::sample(grid, volume.medium.mu_t, &local, end, random),
-        _ => closed_form::sample(volume.medium.mu_t, volume.interval(&local, end)?, random),
+        _ => closed_form::sample(volume, &local, end, random),
     }
 }

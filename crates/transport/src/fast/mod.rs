@@ -205,7 +205,7 @@ impl<'a> Engine<'a> {
     }
 
     /// Puts the ray at the start of the first grid in its way, from volume number `first` on, and settles the
-    /// homogeneous volumes before it in closed form; `false` if there is no grid left.
+    /// volumes with a closed form before it; `false` if there is no grid left.
     #[inline(always)]
     fn enter(&mut self, slot: usize, first: usize) -> bool {
         let shadow = self.rays.shadow[slot] > 0.0;
@@ -215,15 +215,16 @@ impl<'a> Engine<'a> {
             let end = path.nearest.map_or(path.ray_end, |(_, distance)| distance);
             let end = if shadow { path.ray_end } else { end };
             match &volume.kind {
-                Kind::Homogeneous(homogeneous) => {
-                    let local = homogeneous.local_ray(&self.scene.world_ray(path.position, direction));
-                    let Some((enter, leave)) = homogeneous.interval(&local, f64::from(end)) else { continue };
+                Kind::ClosedForm(closed) => {
+                    let local = closed.local_ray(&self.scene.world_ray(path.position, direction));
+                    let Some((enter, leave)) = closed.interval(&local, f64::from(end)) else { continue };
+                    let mu_t = f64::from(volume.mu_t);
                     if shadow {
-                        let optical_thickness = f64::from(volume.mu_t) * (leave - enter);
-                        self.rays.transmittance[slot] *= tyndall_lanes::exp(-optical_thickness as f32);
+                        let integral = closed.density_integral(&local, (enter, leave)).unwrap_or(0.0);
+                        self.rays.transmittance[slot] *= tyndall_lanes::exp((-mu_t * integral) as f32);
                     } else {
-                        let flight = self.rays.random[slot].exponential() / volume.mu_t;
-                        let distance = enter as f32 + flight;
+                        let integral = f64::from(self.rays.random[slot].exponential()) / mu_t;
+                        let distance = closed.distance_of_integral(&local, enter, integral) as f32;
                         if distance < leave as f32 {
                             path.nearest = Some((number as u32, distance));
                         }

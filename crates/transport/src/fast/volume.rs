@@ -3,7 +3,7 @@
 use glam::{Affine3A, DAffine3, DVec3, Vec3};
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::{Density, Ray, Scene, Volume};
-use tyndall_volumes::BrickGrid;
+use tyndall_volumes::{BrickGrid, Filter};
 
 /// Everything in f32 is kept relative to a point amid the volumes, so that a scene far from the origin loses no
 /// digits.
@@ -23,8 +23,8 @@ pub(crate) struct FastVolume<'a> {
 }
 
 pub(crate) enum Kind<'a> {
-    /// A homogeneous density; intersected in f64, which happens once a ray.
-    Homogeneous(&'a Volume),
+    /// A density with a closed form; evaluated in f64, which happens once a ray.
+    ClosedForm(&'a Volume),
     Grid(FastGrid<'a>),
 }
 
@@ -35,6 +35,8 @@ pub(crate) struct FastGrid<'a> {
     /// The domain in local voxel coordinates.
     pub min: Vec3,
     pub max: Vec3,
+    /// Width of the interval over which a tap is spread along each axis: a voxel, or nothing without a filter.
+    pub spread: f32,
 }
 
 impl<'a> FastScene<'a> {
@@ -76,9 +78,13 @@ impl<'a> FastVolume<'a> {
                     to_local: to_local.as_affine3a(),
                     min: (min - origin).as_vec3(),
                     max: (max - origin).as_vec3(),
+                    spread: match grid.filter() {
+                        Filter::Trilinear => 1.0,
+                        Filter::Nearest => 0.0,
+                    },
                 })
             }
-            _ => Kind::Homogeneous(volume),
+            _ => Kind::ClosedForm(volume),
         };
         FastVolume {
             kind,

@@ -1,7 +1,11 @@
-//! Transmittance in closed form, for a homogeneous medium: T = exp(−μt·length) (Beer's law).
+//! Transmittance in closed form: T = exp(−τ), with τ = μt·length in a homogeneous medium (Beer's law) and a difference
+//! of exponentials in an exponential atmosphere.
 //!
 //! Exact; no lookups.
 
-pub(super) fn transmittance(mu_t: f64, interval: Option<(f64, f64)>) -> f64 {
-    interval.map_or(1.0, |(enter, leave)| (-mu_t * (leave - enter)).exp())
+use tyndall_scene::{Ray, Volume};
+
+pub(super) fn transmittance(volume: &Volume, local: &Ray, end: f64) -> f64 {
+    let integral = volume.interval(local, end).and_then(|within| volume.density_integral(local, within));
+    integral.map_or(1.0, |integral| (-volume.medium.mu_t * integral).exp())
 }

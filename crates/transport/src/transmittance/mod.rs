@@ -13,6 +13,6 @@ pub fn estimate_transmittance(volume: &Volume, ray: &Ray, end: f64, random: &mut
     let local = volume.local_ray(ray);
     match &volume.density {
         Density::Grid(grid) => ratio_tracking::estimate(grid, volume.medium.mu_t, &local, end, random),
-        _ => closed_form::transmittance(volume.medium.mu_t, volume.interval(&local, end)),
+        _ => closed_form::transmittance(volume, &local, end),
     }
 }

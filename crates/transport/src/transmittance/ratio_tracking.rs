@@ -26,7 +26,7 @@ pub(super) fn estimate(grid: &BrickGrid, mu_t: f64, local: &Ray, end: f64, rando
             if t >= segment.end {
                 return ControlFlow::Continue(());
             }
-            let extinction = mu_t * grid.trilinear(local.at(t));
+            let extinction = mu_t * grid.value(local.at(t));
             weight *= 1.0 - extinction / majorant;
             if weight < ROULETTE_WEIGHT {
                 if random.f64() * ROULETTE_WEIGHT >= weight {

@@ -132,6 +132,38 @@ fn a_cloud_under_sun_and_sky() {
 }
 
 #[test]
+fn voxels_without_a_filter_in_an_atmosphere() {
+    let folder = tempfile::tempdir().expect("a folder for test files");
+    write_random_npy(&folder.path().join("random.npy"), [6, 6, 6], 22);
+    let scene = scene_in(
+        folder.path(),
+        &format!(
+            r#"{HEAD}
+            [[volume]]
+            file = "random.npy"
+            filter = "nearest"
+            transform = {{ scale = 0.3, translate = [-0.9, -0.9, -0.9] }}
+            mu_t = 3
+            albedo = [0.9, 0.6, 0.3]
+            [[volume]]
+            atmosphere = {{ bottom = -1, scale_height = 0.7 }}
+            mu_t = 0.5
+            albedo = 0.8
+            phase = {{ type = "hg", g = 0.5 }}
+            [[light]]
+            type = "distant"
+            direction = [0.2, 1, 0.4]
+            irradiance = 3
+            [[light]]
+            type = "constant"
+            radiance = 0.4
+            "#
+        ),
+    );
+    assert_integrators_agree("voxels in an atmosphere", &scene);
+}
+
+#[test]
 fn overlapping_media_of_different_kinds_that_glow_beside_a_point_light() {
     let folder = tempfile::tempdir().expect("a folder for test files");
     write_random_npy(&folder.path().join("random.npy"), [16, 16, 16], 21);
