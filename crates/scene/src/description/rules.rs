@@ -22,7 +22,7 @@ impl SceneDescription {
         let mut found = Findings { here: Vec::new(), violations: Vec::new() };
         found.within("camera", |found| camera(found, &self.camera));
         if let Some(medium) = &self.medium {
-            found.within("medium", |found| medium_coefficients(found, medium));
+            found.within("medium", |found| medium_rules(found, medium));
         }
         for (index, description) in self.volumes.iter().enumerate() {
             found.within("volume", |found| {
@@ -95,14 +95,17 @@ fn camera(found: &mut Findings, camera: &CameraDescription) {
     }
 }
 
-fn medium_coefficients(found: &mut Findings, medium: &MediumDescription) {
+fn medium_rules(found: &mut Findings, medium: &MediumDescription) {
     if let Err((key, message)) = medium.coefficients() {
         found.report(key, message);
+    }
+    if let Some((key, message)) = medium.phase.violation() {
+        found.within("phase", |found| found.report(key, message));
     }
 }
 
 fn volume(found: &mut Findings, volume: &VolumeDescription) {
-    medium_coefficients(found, &volume.medium);
+    medium_rules(found, &volume.medium);
     if let Some(transform) = &volume.transform {
         found.within("transform", |found| transform_is_invertible(found, transform));
     }
