@@ -95,7 +95,7 @@ pub const CHAPTERS: &[Chapter] = &[
         3,
         &[
             layer("scene.toml", Shown::Background, "T Lo: what gets through"),
-            layer("scene.toml", Shown::Emission, "+ emission: T μa Le"),
+            layer("scene.toml", Shown::Emission, "+ light of the fire"),
             layer("scene.toml", Shown::Single, "+ scattered once"),
             layer("scene.toml", Shown::Multiple, "+ scattered more often"),
             layer("scene.toml", Shown::Radiance, "= L: all of it"),
@@ -108,8 +108,8 @@ pub const CHAPTERS: &[Chapter] = &[
         &[
             panel("scene.toml --set volume.24.mu_a=0", "vacuum: T = 1"),
             panel(
-                "scene.toml --set volume.24.atmosphere.scale_height=1e6 --set volume.24.mu_a=0.1",
-                "μa = 0.1 /m everywhere",
+                "scene.toml --set volume.24.atmosphere.scale_height=1e6 --set volume.24.mu_a=0.05",
+                "μa = 0.05 /m everywhere",
             ),
             panel("scene.toml", "thinning out with height"),
         ],
@@ -117,7 +117,7 @@ pub const CHAPTERS: &[Chapter] = &[
     panels(
         "08_smoke_and_steam",
         1,
-        &[panel("scene.toml", "  smoke: albedo 0.4                          steam: albedo 0.9999")],
+        &[panel("scene.toml", "      smoke: albedo 0.4                        steam: albedo 0.9999")],
     ),
     panels(
         "09_isotropic_and_forward",
