@@ -13,7 +13,7 @@ use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Film, ImageMetadata, Layers};
 use tyndall_scene::description::{Integrator, Layer, SceneDescription};
 use tyndall_scene::{Scene, build, scene_hash};
-use tyndall_transport::{Control, Outcome, RenderOptions, render_pass};
+use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
 use crate::output::{Output, check_writable, parse_exposure, write_all};
@@ -217,6 +217,7 @@ fn render(
         integrator: description.render.integrator,
         seed: picture.metadata.seed,
         threads: args.threads.map_or(cores, usize::from),
+        estimators: Estimators::default(),
     };
     let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
     let mut clock = stop::Clock::start(picture.metadata.seconds);

@@ -10,6 +10,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Channels, Ray, Scene};
 
+use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::reference;
 use crate::spectral::SpectralScene;
@@ -23,6 +24,8 @@ pub struct RenderOptions {
     pub seed: u64,
     /// Number of threads, at least 1.
     pub threads: usize,
+    /// Which estimators the reference integrator uses; the fast one has its own.
+    pub estimators: Estimators,
 }
 
 /// What a render tells and is told while it runs.
@@ -68,7 +71,7 @@ pub fn render_pass(
             let complete = match &engine {
                 Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
                 Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
-                    reference::trace(scene, ray, random)
+                    reference::trace_with(scene, options.estimators, ray, random)
                 }),
                 Engine::Spectral(spectral_scene) => {
                     trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {

@@ -7,7 +7,7 @@ use tyndall_film::{Film, Layers};
 use tyndall_scene::{ChromaticMedium, Scene};
 use tyndall_transport::RenderOptions;
 
-use crate::rendering::{BOTH, add_pass};
+use crate::rendering::{BOTH, add_pass, options};
 use crate::scenes::scene;
 
 /// Two overlapping volumes, a grid and a shape, under lights of two kinds; six blocks of tiles, some of them cut.
@@ -48,7 +48,7 @@ fn threads_and_passes_change_no_bit() {
     for (scene, integrator) in all.into_iter().chain([(&chromatic, BOTH[0])]) {
         let film = |threads, passes: &[[u64; 2]]| {
             let mut film = Film::new(150, 90, Layers::ALL).expect("a small picture");
-            let options = RenderOptions { integrator, seed: 7, threads };
+            let options = RenderOptions { threads, ..options(integrator, 7) };
             for &[start, end] in passes {
                 add_pass(scene, &mut film, start..end, options);
             }
