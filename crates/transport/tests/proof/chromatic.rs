@@ -20,7 +20,7 @@ use crate::slab::{Row, rows};
 use crate::statistics::{kolmogorov_smirnov, mean_and_error, normal_cdf, two_sided_quantile};
 
 /// Batches of pictures of the crowd.
-const BATCHES: u64 = 16;
+pub const BATCHES: u64 = 16;
 
 /// The scene with the extinction of each volume multiplied by `factors` in red, green and blue, and phase functions of
 /// mean cosine `g` in all volumes if there are any.
@@ -46,7 +46,7 @@ fn grey(mut scene: Scene, factors: DVec3, g: Option<[f64; 3]>, channel: usize) -
 }
 
 /// Rough grids and shapes that overlap and glow, under a lamp, a bright patch of sky and an even light.
-fn crowd() -> Scene {
+pub fn crowd() -> Scene {
     let folder = tempfile::tempdir().expect("a folder for test files");
     write_random_npy(&folder.path().join("random.npy"), [16, 16, 16], 21);
     let mut crowd = scene_in(

@@ -10,5 +10,6 @@ mod rendering;
 mod same_bits;
 mod scenes;
 mod slab;
+mod spectrum;
 mod statistics;
 mod white_furnace;
