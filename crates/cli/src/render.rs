@@ -2,7 +2,7 @@
 
 pub mod input;
 mod progress;
-mod stop;
+pub mod stop;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,8 @@
 //!
 //! `along_ray` is the extinction along one ray, which is all that an estimator sees; `distance` and `transmittance` hold one
 //! estimator a file; `reference` puts them together as the equation reads; `fast` does the same with many paths at once,
-//! `spectral` in media that depend on colour. [`render_pass`] fills a film with any of them.
+//! `spectral` in media that depend on colour. [`render_pass`] fills a film with any of them. [`walk`] follows light the
+//! other way, from where it enters, for fluxes.
 
 pub mod along_ray;
 pub mod distance;
@@ -15,6 +16,7 @@ mod render;
 mod repeat;
 mod spectral;
 pub mod transmittance;
+pub mod walk;
 
 pub use along_ray::{AlongRay, Lookups};
 pub use distance::{DistanceSampler, Flight, sample_distance};
