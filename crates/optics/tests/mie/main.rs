@@ -1,0 +1,3 @@
+//! Lorenz-Mie theory against tables of independent codes, published values and limits.
+
+mod sphere;
