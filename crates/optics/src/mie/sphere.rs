@@ -45,18 +45,13 @@ pub struct Sphere {
 impl Sphere {
     /// Solves the sphere of size `x` (1e-6 to 1e5) and refractive index `m` relative to the medium around.
     pub fn new(m: RefractiveIndex, x: f64) -> Result<Self, MieError> {
-        if !SIZES.contains(&x) {
-            return Err(MieError::Size { x });
-        }
-        m.check()?;
-        if m.n == 1.0 && m.k == 0.0 {
-            return Err(MieError::NoContrast);
-        }
-        let m = Complex64::new(m.n, m.k);
-        if m.norm() * x > GREATEST_INNER_SIZE {
-            return Err(MieError::InnerSize { m: m.norm(), x });
-        }
-        Ok(Self::solve(m, x))
+        check_sphere(m, x)?;
+        Ok(Self::solve(Complex64::new(m.n, m.k), x))
+    }
+
+    /// Number of terms in the series.
+    pub(super) fn terms(&self) -> usize {
+        self.coefficients.len()
     }
 
     fn solve(m: Complex64, x: f64) -> Self {
@@ -103,52 +98,85 @@ impl Sphere {
 
     /// The phase function of unpolarised light at cos θ, 1/sr: (|S₁|² + |S₂|²)/(2πx²Qsca).
     pub fn phase_function(&self, cos_theta: f64) -> f64 {
-        let mut value = [0.0];
-        self.add_intensities(&[cos_theta], 1.0 / (PI * self.x * self.x * self.q_sca), &mut value);
-        value[0]
+        let (mut there, mut opposite) = ([0.0], [0.0]);
+        let weight = 1.0 / (PI * self.x * self.x * self.q_sca);
+        self.add_intensities(&[cos_theta], weight, &mut there, &mut opposite);
+        there[0]
     }
 
-    /// Adds `weight` (|S₁|² + |S₂|²)/2 at each cos θ to `sums`.
-    ///
-    /// The amplitudes S± = S₁ ± S₂ = Σ (2n+1)/(n(n+1)) (aₙ ± bₙ)(πₙ ± τₙ), with the angular functions by the upward
-    /// recurrence of Wiscombe 1980, "Improved Mie scattering algorithms", eq. 15-17.
-    pub fn add_intensities(&self, cos_theta: &[f64], weight: f64, sums: &mut [f64]) {
-        for (cosines, sums) in cos_theta.chunks(LANES).zip(sums.chunks_mut(LANES)) {
+    /// Adds `weight` (|S₁|² + |S₂|²)/2 at each cos θ to `there`, and that at −cos θ to `opposite`.
+    pub(super) fn add_intensities(
+        &self,
+        cos_theta: &[f64],
+        weight: f64,
+        there: &mut [f64],
+        opposite: &mut [f64],
+    ) {
+        let blocks = cos_theta.chunks(LANES).zip(there.chunks_mut(LANES)).zip(opposite.chunks_mut(LANES));
+        for ((cosines, there), opposite) in blocks {
             let mut mu = [1.0; LANES];
             mu[..cosines.len()].copy_from_slice(cosines);
             let intensities = self.intensities(&mu);
-            for (sum, intensity) in sums.iter_mut().zip(intensities) {
-                *sum += weight * intensity;
+            for (sums, intensities) in [there, opposite].into_iter().zip(intensities) {
+                for (sum, intensity) in sums.iter_mut().zip(intensities) {
+                    *sum += weight * intensity;
+                }
             }
         }
     }
 
-    /// (|S₁|² + |S₂|²)/2 = (|S₊|² + |S₋|²)/4 of some angles at once, which the compiler puts into vectors.
-    fn intensities(&self, mu: &[f64; LANES]) -> [f64; LANES] {
+    /// (|S₁|² + |S₂|²)/2 = (|S₊|² + |S₋|²)/4 at some angles and at those opposite, in a form that compiles to vectors.
+    ///
+    /// The amplitudes are S± = S₁ ± S₂ = Σ (2n+1)/(n(n+1)) (aₙ ± bₙ)(πₙ ± τₙ), with the angular functions by the upward
+    /// recurrence of Wiscombe 1980, "Improved Mie scattering algorithms", eq. 15-17. For the opposite angle, πₙ ± τₙ is
+    /// (−1)ⁿ⁺¹(πₙ ∓ τₙ).
+    fn intensities(&self, mu: &[f64; LANES]) -> [[f64; LANES]; 2] {
         let (mut pi_before, mut pi) = ([0.0; LANES], [1.0; LANES]);
-        let mut sums = [[0.0; LANES]; 4];
+        let [mut there, mut opposite] = [[[0.0; LANES]; 4]; 2];
+        let mut sign = 1.0;
         for (index, [plus, minus]) in self.coefficients.iter().enumerate() {
             let n = (index + 1) as f64;
             let growth = (n + 1.0) / n;
+            let [signed_plus, signed_minus] = [plus * sign, minus * sign];
+            sign = -sign;
             for lane in 0..LANES {
                 let s = mu[lane] * pi[lane];
                 let t = s - pi_before[lane];
                 let tau = n * t - pi_before[lane];
                 let (together, apart) = (pi[lane] + tau, pi[lane] - tau);
-                sums[0][lane] += plus.re * together;
-                sums[1][lane] += plus.im * together;
-                sums[2][lane] += minus.re * apart;
-                sums[3][lane] += minus.im * apart;
+                there[0][lane] += plus.re * together;
+                there[1][lane] += plus.im * together;
+                there[2][lane] += minus.re * apart;
+                there[3][lane] += minus.im * apart;
+                opposite[0][lane] += signed_plus.re * apart;
+                opposite[1][lane] += signed_plus.im * apart;
+                opposite[2][lane] += signed_minus.re * together;
+                opposite[3][lane] += signed_minus.im * together;
                 pi_before[lane] = pi[lane];
                 pi[lane] = s + growth * t;
             }
         }
-        std::array::from_fn(|lane| 0.25 * sums.iter().map(|sum| sum[lane] * sum[lane]).sum::<f64>())
+        [there, opposite].map(|sums| {
+            std::array::from_fn(|lane| 0.25 * sums.iter().map(|sum| sum[lane] * sum[lane]).sum::<f64>())
+        })
     }
 }
 
-/// Angles whose amplitudes are summed together.
-const LANES: usize = 8;
+/// Whether a sphere can be solved.
+pub(super) fn check_sphere(m: RefractiveIndex, x: f64) -> Result<(), MieError> {
+    m.check()?;
+    if !SIZES.contains(&x) {
+        return Err(MieError::Size { x });
+    }
+    if m.n == 1.0 && m.k == 0.0 {
+        return Err(MieError::NoContrast);
+    }
+    let m = m.n.hypot(m.k);
+    if m * x > GREATEST_INNER_SIZE { Err(MieError::InnerSize { m, x }) } else { Ok(()) }
+}
+
+/// Angles whose amplitudes are summed together: as many as fit the registers.
+const LANES: usize = 4;
 
 /// Beyond x + 4.05 x^{1/3} terms the rest is below 1e-14 of Qext (Wiscombe 1980, eq. 8). Some more, since amplitudes far
 /// from forward fall only with the root of that, and more slowly where a sharp resonance lies beyond.
