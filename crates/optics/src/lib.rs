@@ -1,10 +1,18 @@
-//! Phase functions and coefficients of participating media. Knows no geometry.
+//! What participating media do to light at a point: phase functions, coefficients, spectra and colour. Knows no
+//! geometry.
 
 #![forbid(unsafe_code)]
 
+pub mod albedo_inversion;
+pub mod cie;
 pub mod mie;
 pub mod phase_function;
+pub mod planck;
+pub mod presets;
 pub mod refractive_index;
+mod spectrum;
+pub mod uplift;
 
-pub use phase_function::PhaseFunction;
+pub use phase_function::{PhaseFunction, SpectralPhase};
 pub use refractive_index::{Material, RefractiveIndex, RefractiveIndexTable};
+pub use spectrum::{Spectrum, SpectrumError};

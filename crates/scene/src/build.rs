@@ -4,17 +4,17 @@ use glam::{DAffine3, DVec3};
 use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
-use tyndall_optics::PhaseFunction;
 use tyndall_volumes::{
-    AxisOrder, BrickGrid, ByteOrder, Element, Grid, GridClass, GridSelection, GridValues, RawShape,
+    AxisOrder, BrickGrid, ByteOrder, Element, Filter, Grid, GridClass, GridSelection, GridValues, RawShape,
     ReadError, ReadRequest,
 };
 
 use crate::description::{
-    GridMeaning, MediumDescription, PhaseDescription, ProceduralDescription, RawType, Storage,
-    VolumeDescription, VolumeSource,
+    AtmosphereShape, Coefficients, GridFilter, GridMeaning, MediumDescription, ProceduralDescription,
+    RawType, Storage, VolumeDescription, VolumeSource,
 };
 use crate::light::build_lights;
+use crate::phase::{build_phase, grey_phase};
 use crate::ready::light_probabilities;
 use crate::{Camera, Density, Medium, Scene, SceneDescription, SceneError, Volume, procedural};
 
@@ -39,7 +39,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
             name: "medium".into(),
             world_to_local: DAffine3::IDENTITY,
             density: Density::Everywhere,
-            medium: ready_medium(medium, "medium")?,
+            medium: ready_medium(medium, "medium", folder, &mut notes)?,
         });
     }
     for (number, volume) in description.volumes.iter().enumerate() {
@@ -83,7 +83,7 @@ fn build_volume(
             let grid = read_grid(description, &path, notes)?;
             grids.push((name.clone(), grid.name.clone()));
             let bricks = build_bricks(description, &grid, &path, notes)?;
-            (Density::Grid(Arc::new(bricks)), grid.index_to_world)
+            grid_density(bricks, &grid)
         }
         VolumeSource::Box(cuboid) => {
             let [min, max] = [cuboid.min, cuboid.max].map(DVec3::from_array);
@@ -96,10 +96,15 @@ fn build_volume(
         VolumeSource::Slab(slab) => {
             (Density::Slab { bottom: slab.bottom, top: slab.top }, DAffine3::IDENTITY)
         }
+        VolumeSource::Atmosphere(AtmosphereShape { bottom, top, scale_height }) => {
+            let top = top.unwrap_or(f64::INFINITY);
+            let atmosphere = Density::Atmosphere { bottom: *bottom, top, scale_height: *scale_height };
+            (atmosphere, DAffine3::IDENTITY)
+        }
         VolumeSource::Procedural(ProceduralDescription::Cumulus { seed, resolution, center, size }) => {
             let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size);
             let bricks = build_bricks(description, &grid, Path::new(&name), notes)?;
-            (Density::Grid(Arc::new(bricks)), grid.index_to_world)
+            grid_density(bricks, &grid)
         }
     };
     let local_to_world = to_scene * local_to_volume;
@@ -110,19 +115,29 @@ fn build_volume(
             "its transform is singular: it flattens the volume; give scales other than 0",
         ));
     }
-    let medium = ready_medium(&description.medium, &name)?;
+    let medium = ready_medium(&description.medium, &name, folder, notes)?;
     Ok(Volume { name, world_to_local, density, medium })
 }
 
-fn ready_medium(description: &MediumDescription, name: &str) -> Result<Medium, SceneError> {
+/// The density, and its local coordinates in those of the volume.
+fn grid_density(bricks: BrickGrid, grid: &Grid) -> (Density, DAffine3) {
+    let to_index = DAffine3::from_translation(DVec3::splat(-bricks.filter().offset()));
+    (Density::Grid(Arc::new(bricks)), grid.index_to_world * to_index)
+}
+
+fn ready_medium(
+    description: &MediumDescription,
+    name: &str,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Medium, SceneError> {
     let coefficients =
         description.coefficients().map_err(|(_, message)| SceneError::file(Path::new(name), message))?;
-    let phase_function = match description.phase {
-        PhaseDescription::Isotropic => PhaseFunction::Isotropic,
-        PhaseDescription::Hg { g } => PhaseFunction::HenyeyGreenstein { g },
-    };
+    let (phase_function, note) = grey_phase(&build_phase(&description.phase, folder)?);
+    notes.extend(note.map(|note| format!("{name}: {note}")));
     let emission = description.emission.map_or(DVec3::ZERO, |emission| emission.channels());
-    Ok(Medium { mu_t: coefficients.mu_t, albedo: coefficients.albedo, phase_function, emission })
+    let Coefficients { mu_t, albedo } = coefficients;
+    Ok(Medium { mu_t, albedo, phase_function, emission, chromatic: None })
 }
 
 /// Reads the grid that the description names, or the one that is most likely meant.
@@ -242,7 +257,10 @@ fn build_bricks(
     if has_negative.get() {
         notes.push(format!("{}: negative values of `{}` count as 0", path.display(), grid.name));
     }
-    Ok(bricks)
+    Ok(bricks.with_filter(match description.filter.unwrap_or_default() {
+        GridFilter::Trilinear => Filter::Trilinear,
+        GridFilter::Nearest => Filter::Nearest,
+    }))
 }
 
 fn element(raw_type: RawType) -> Element {

@@ -10,7 +10,8 @@ use crate::Ray;
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient μt, 1/scene unit.
+    /// Extinction coefficient μt, 1/scene unit: of oriented particles, the greatest over all directions (see
+    /// [`Medium::mu_t_along`]); of a chromatic medium, the mean of its channels.
     pub mu_t: f64,
     /// Single-scattering albedo μs/μt, linear RGB in 0…1.
     pub albedo: DVec3,
@@ -18,6 +19,24 @@ pub struct Medium {
     pub phase_function: PhaseFunction,
     /// Emitted radiance Le; the source term of the volume rendering equation is μa·Le.
     pub emission: DVec3,
+    /// What depends on colour beside albedo and emission; it takes the place of `mu_t` and `phase_function`.
+    pub chromatic: Option<Arc<ChromaticMedium>>,
+}
+
+/// What of a medium depends on colour, beside its albedo and emission.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChromaticMedium {
+    /// Extinction coefficient μt in red, green and blue, 1/scene unit.
+    pub mu_t: DVec3,
+    /// Phase functions of red, green and blue, if they differ.
+    pub phase_functions: Option<[PhaseFunction; 3]>,
+}
+
+impl Medium {
+    /// Extinction coefficient for light that travels along the unit vector `direction`, or against it.
+    pub fn mu_t_along(&self, direction: DVec3) -> f64 {
+        self.mu_t * self.phase_function.projected_area(direction)
+    }
 }
 
 /// Where the density of a volume comes from, in the volume's local coordinates.
@@ -41,8 +60,17 @@ pub enum Density {
         /// y of the upper face.
         top: f64,
     },
-    /// The trilinearly filtered values of a grid, none of whose voxels is negative; local coordinates are its index
-    /// coordinates.
+    /// exp(−(y − bottom)/scale_height) where bottom < y < top.
+    Atmosphere {
+        /// y of the lower face.
+        bottom: f64,
+        /// y of the upper face; may be infinite.
+        top: f64,
+        /// Height over which the density falls by a factor e.
+        scale_height: f64,
+    },
+    /// The filtered values of a grid, none of whose voxels is negative; local coordinates are those of the grid's
+    /// filter.
     Grid(Arc<BrickGrid>),
 }
 
@@ -69,13 +97,13 @@ impl Volume {
         }
     }
 
-    /// The distances between which the local ray is inside a homogeneous density, cut to [0, `end`]; for a grid,
-    /// inside its domain.
+    /// The distances between which the local ray is inside the density, cut to [0, `end`]; for a grid, inside its
+    /// domain.
     pub fn interval(&self, local: &Ray, end: f64) -> Option<(f64, f64)> {
         let (enter, leave) = match &self.density {
             Density::Everywhere => (0.0, end),
             Density::Box { min, max } => box_interval(local, *min, *max)?,
-            Density::Slab { bottom, top } => {
+            Density::Slab { bottom, top } | Density::Atmosphere { bottom, top, .. } => {
                 let infinite = DVec3::splat(f64::INFINITY);
                 box_interval(local, (-infinite).with_y(*bottom), infinite.with_y(*top))?
             }
@@ -89,10 +117,33 @@ impl Volume {
         (enter < leave).then_some((enter, leave))
     }
 
+    /// ∫ density along the local ray between two distances inside the density, in closed form; `None` for a grid.
+    pub fn density_integral(&self, local: &Ray, (start, end): (f64, f64)) -> Option<f64> {
+        match &self.density {
+            Density::Grid(_) => None,
+            Density::Atmosphere { bottom, scale_height, .. } => {
+                Some(Exponential::along(local, *bottom, *scale_height).integral(start, end))
+            }
+            _ => Some(end - start),
+        }
+    }
+
+    /// The distance at which ∫ density along the local ray from `start` on is `integral`, in closed form and as if the
+    /// density had no end; infinite if it never is, and for a grid.
+    pub fn distance_of_integral(&self, local: &Ray, start: f64, integral: f64) -> f64 {
+        match &self.density {
+            Density::Grid(_) => f64::INFINITY,
+            Density::Atmosphere { bottom, scale_height, .. } => {
+                Exponential::along(local, *bottom, *scale_height).distance_of_integral(start, integral)
+            }
+            _ => start + integral,
+        }
+    }
+
     /// Corners of a box in local coordinates around the density; `None` where it is unbounded.
     pub fn local_box(&self) -> Option<[DVec3; 2]> {
         match &self.density {
-            Density::Everywhere | Density::Slab { .. } => None,
+            Density::Everywhere | Density::Slab { .. } | Density::Atmosphere { .. } => None,
             Density::Box { min, max } => Some([*min, *max]),
             Density::Sphere => Some([DVec3::NEG_ONE, DVec3::ONE]),
             Density::Grid(grid) => Some(grid.domain()),
@@ -109,6 +160,53 @@ impl Volume {
         let min = (1..8).fold(corner(0), |least, i| least.min(corner(i)));
         let max = (1..8).fold(corner(0), |greatest, i| greatest.max(corner(i)));
         Some([min, max])
+    }
+}
+
+/// A density that is an exponential function along a ray: e^(logarithm − rate·t).
+struct Exponential {
+    logarithm: f64,
+    rate: f64,
+}
+
+impl Exponential {
+    fn along(local: &Ray, bottom: f64, scale_height: f64) -> Exponential {
+        Exponential {
+            logarithm: -(local.origin.y - bottom) / scale_height,
+            rate: local.direction.y / scale_height,
+        }
+    }
+
+    fn integral(&self, start: f64, end: f64) -> f64 {
+        let first = (self.logarithm - self.rate * start).exp();
+        let exponent = self.rate * (end - start);
+        // (1 − e^−x)/x is 1 − x/2 to double precision below 1e-9, where the quotient loses its digits.
+        if self.rate == 0.0 {
+            first * (end - start)
+        } else if exponent.abs() < 1e-9 {
+            first * (end - start) * (1.0 - 0.5 * exponent)
+        } else {
+            first * -(-exponent).exp_m1() / self.rate
+        }
+    }
+
+    fn distance_of_integral(&self, start: f64, integral: f64) -> f64 {
+        let logarithm = self.logarithm - self.rate * start;
+        // The distance over which the density at the start would give the integral.
+        let constant = integral * (-logarithm).exp();
+        let exponent = self.rate * constant;
+        if self.rate == 0.0 {
+            start + constant
+        } else if exponent.abs() < 1e-9 {
+            start + constant * (1.0 + 0.5 * exponent)
+        } else if exponent >= 1.0 {
+            f64::INFINITY
+        } else if exponent < -1e18 {
+            // So far above the layer that the density there underflows.
+            start - ((-self.rate * integral).ln() - logarithm) / self.rate
+        } else {
+            start - (-exponent).ln_1p() / self.rate
+        }
     }
 }
 
@@ -157,6 +255,7 @@ mod tests {
             albedo: DVec3::ONE,
             phase_function: PhaseFunction::Isotropic,
             emission: DVec3::ZERO,
+            chromatic: None,
         };
         Volume { name: "test".into(), world_to_local, density, medium }
     }
@@ -182,6 +281,35 @@ mod tests {
         let cube = homogeneous(Density::Box { min: DVec3::ZERO, max: DVec3::ONE }, DAffine3::IDENTITY);
         assert_eq!(interval(&cube, DVec3::new(0.5, 0.5, -1.0), DVec3::Z), Some((1.0, 2.0)));
         assert_eq!(interval(&cube, DVec3::new(0.5, 1.5, -1.0), DVec3::Z), None);
+    }
+
+    #[test]
+    fn the_integral_of_an_atmosphere_is_that_of_a_fine_quadrature_and_is_inverted() {
+        let density = Density::Atmosphere { bottom: 1.0, top: f64::INFINITY, scale_height: 2.0 };
+        let atmosphere = homogeneous(density, DAffine3::IDENTITY);
+        for slope in [-0.9_f64, -1e-3, -1e-12, 0.0, 1e-12, 1e-3, 0.9] {
+            let direction = DVec3::new((1.0 - slope * slope).sqrt(), slope, 0.0);
+            let ray = Ray { origin: DVec3::new(0.0, 5.0, 0.0), direction };
+            let (start, end) = (0.5, 3.5);
+            let steps = 3000;
+            let step = (end - start) / f64::from(steps);
+            let height = |k: i32| ray.at(start + (f64::from(k) + 0.5) * step).y;
+            let quadrature: f64 = (0..steps).map(|k| step * (-(height(k) - 1.0) / 2.0).exp()).sum();
+            let integral = atmosphere.density_integral(&ray, (start, end)).unwrap();
+            assert!((integral / quadrature - 1.0).abs() < 1e-7, "{slope}: {integral} {quadrature}");
+            let distance = atmosphere.distance_of_integral(&ray, start, integral);
+            assert!((distance - end).abs() < 1e-9, "{slope}: {distance}");
+        }
+        // Straight up from 5 to infinity there is e^-2 · 2 in all.
+        let up = Ray { origin: DVec3::new(0.0, 5.0, 0.0), direction: DVec3::Y };
+        let all = 2.0 * (-2.0_f64).exp();
+        assert_eq!(atmosphere.interval(&up, f64::INFINITY), Some((0.0, f64::INFINITY)));
+        assert!((atmosphere.density_integral(&up, (0.0, f64::INFINITY)).unwrap() - all).abs() < 1e-15);
+        assert_eq!(atmosphere.distance_of_integral(&up, 0.0, 1.001 * all), f64::INFINITY);
+        // Down from where the density underflows: half of all there is lies above 1 + 2 ln 2.
+        let down = Ray { origin: DVec3::new(0.0, 3001.0, 0.0), direction: DVec3::NEG_Y };
+        let distance = atmosphere.distance_of_integral(&down, 0.0, 1.0);
+        assert!((distance - (3000.0 - 2.0 * 2.0_f64.ln())).abs() < 1e-9, "{distance}");
     }
 
     #[test]

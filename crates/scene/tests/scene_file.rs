@@ -157,7 +157,7 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         ),
         (
             "[[volume]]\nmu_t = 1\nalbedo = 1".to_owned(),
-            "scene.toml:4:1: the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `procedural`",
+            "scene.toml:4:1: the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`",
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 1\nslab = {{ bottom = 0, top = 1 }}"),

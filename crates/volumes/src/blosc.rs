@@ -32,7 +32,6 @@ const BLOCK: usize = 1 << 18;
 const LZ4_MOST_RATIO: usize = 255;
 
 /// Decompresses one container that must hold exactly `expected_len` bytes.
-#[allow(dead_code)] // The reader of .nvdb files is its user.
 pub(crate) fn decompress(chunk: &[u8], expected_len: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     decompress_into(chunk, expected_len, &mut bytes, &mut Vec::new())?;

@@ -13,7 +13,7 @@
 //! assert_eq!(file.grids[0].values.statistics().active_voxels, 4096);
 //!
 //! let bricks = BrickGrid::new(&file.grids[0], Storage::F16)?;
-//! assert_eq!(bricks.trilinear(glam::DVec3::new(2.5, 7.0, 7.0)), 2.5);
+//! assert_eq!(bricks.value(glam::DVec3::new(2.5, 7.0, 7.0)), 2.5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -41,7 +41,7 @@ pub mod vdb;
 mod vol;
 mod write;
 
-pub use bricks::{BrickGrid, Storage};
+pub use bricks::{BrickGrid, Filter, Storage};
 pub use element::{AxisOrder, ByteOrder, Element};
 pub use error::{ReadError, WriteError};
 pub use grid::{Grid, GridClass, GridValues, LEAF_EDGE, LEAF_VOXELS, Leaf, Tile, Tree};

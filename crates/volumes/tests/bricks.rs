@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use std::ops::ControlFlow;
-use tyndall_volumes::{BrickGrid, Grid, GridClass, GridValues, Leaf, Storage, Tile, Tree};
+use tyndall_volumes::{BrickGrid, Filter, Grid, GridClass, GridValues, Leaf, Storage, Tile, Tree};
 
 /// A small generator for the test's own choices.
 struct Draws(u64);
@@ -77,12 +77,13 @@ fn voxels_are_those_of_the_tree() {
 }
 
 #[test]
-fn trilinear_values_stay_within_the_bounds_of_their_segment() {
+fn filtered_values_stay_within_the_bounds_of_their_segment() {
     for seed in 0..30 {
         let mut draws = Draws(seed);
         let tree = random_tree(&mut draws, if seed % 3 == 0 { 0.1 } else { 0.0 });
         for storage in [Storage::U8, Storage::F16, Storage::F32] {
-            let bricks = BrickGrid::from_tree(&tree, "t", storage).unwrap();
+            let filter = if seed % 2 == 0 { Filter::Trilinear } else { Filter::Nearest };
+            let bricks = BrickGrid::from_tree(&tree, "t", storage).unwrap().with_filter(filter);
             for _ in 0..30 {
                 let origin = draws.point() * 400.0 - 260.0;
                 let mut direction = draws.point() * 400.0 - 260.0 - origin;
@@ -101,7 +102,7 @@ fn trilinear_values_stay_within_the_bounds_of_their_segment() {
                     reached = Some(segment.end);
                     for _ in 0..4 {
                         let t = segment.start + draws.unit() * (segment.end - segment.start);
-                        let value = bricks.trilinear(origin + direction * t) as f32;
+                        let value = bricks.value(origin + direction * t) as f32;
                         assert!(
                             value >= segment.bounds.min - 1e-6 && value <= segment.bounds.max + 1e-6,
                             "seed {seed} {storage:?}: {value} outside {:?}",
@@ -112,6 +113,26 @@ fn trilinear_values_stay_within_the_bounds_of_their_segment() {
                 });
             }
         }
+    }
+}
+
+/// Half a voxel further on, a voxel fills the unit cube between its number and the next.
+#[test]
+fn without_a_filter_each_voxel_is_a_cube() {
+    for (background, faces) in [(0.0, [-1.0, 1.0]), (0.25, [-0.5, 0.5])] {
+        let tree = random_tree(&mut Draws(9), background);
+        let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
+        let filtered_domain = bricks.domain();
+        let bricks = bricks.with_filter(Filter::Nearest);
+        let mut draws = Draws(10);
+        for _ in 0..2000 {
+            let voxel = [0; 3].map(|_: i32| draws.below(400) as i32 - 260);
+            let p = DVec3::from_array(voxel.map(f64::from)) + draws.point() * 0.999;
+            assert_eq!(bricks.value(p) as f32, bricks.voxel(voxel), "{p}");
+        }
+        let active = [0, 1].map(|i| filtered_domain[i] - faces[i]);
+        assert_eq!(bricks.domain(), [active[0], active[1] + 1.0]);
+        assert_eq!(bricks.with_filter(Filter::Trilinear).domain(), filtered_domain);
     }
 }
 
@@ -169,7 +190,7 @@ fn the_domain_holds_everything_that_differs_from_the_background() {
     for _ in 0..20_000 {
         let p = draws.point() * 420.0 - 270.0;
         if p.cmplt(low).any() || p.cmpgt(high).any() {
-            assert_eq!(bricks.trilinear(p), 0.0, "{p}");
+            assert_eq!(bricks.value(p), 0.0, "{p}");
         }
     }
 }
@@ -182,7 +203,7 @@ fn a_huge_tile_costs_kilobytes() {
     assert!(bricks.memory_bytes() < 1 << 20, "{} bytes", bricks.memory_bytes());
     assert_eq!(bricks.voxel([-1, 4095, 4096]), 0.5);
     assert_eq!(bricks.voxel([0, 4095, 4096]), 0.0);
-    assert_eq!(bricks.trilinear(DVec3::new(-0.5, 10.0, 5000.0)), 0.25);
+    assert_eq!(bricks.value(DVec3::new(-0.5, 10.0, 5000.0)), 0.25);
 }
 
 #[test]
@@ -217,7 +238,7 @@ fn one_random_tap_has_the_trilinear_mean() {
         }
         let mean = sum / n as f64;
         let error = ((squares / n as f64 - mean * mean).max(1e-12) / n as f64).sqrt();
-        assert!((mean - bricks.trilinear(p)).abs() < 4.5 * error, "{mean} against {}", bricks.trilinear(p));
+        assert!((mean - bricks.value(p)).abs() < 4.5 * error, "{mean} against {}", bricks.value(p));
     }
 }
 

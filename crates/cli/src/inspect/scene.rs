@@ -117,10 +117,11 @@ fn optical_thickness(volume: &Volume, [min, max]: [DVec3; 2]) -> OpticalThicknes
 /// ∫ density along a local ray from 0 to `end`.
 fn density_integral(volume: &Volume, ray: &Ray, end: f64) -> f64 {
     let Some((enter, leave)) = volume.interval(ray, end) else { return 0.0 };
-    let Density::Grid(bricks) = &volume.density else { return leave - enter };
+    let Density::Grid(bricks) = &volume.density else {
+        return volume.density_integral(ray, (enter, leave)).unwrap_or(0.0);
+    };
     let step = (leave - enter) / f64::from(POINTS);
-    let density =
-        |k: u32| bricks.trilinear(ray.origin + ray.direction * (enter + (f64::from(k) + 0.5) * step));
+    let density = |k: u32| bricks.value(ray.origin + ray.direction * (enter + (f64::from(k) + 0.5) * step));
     (0..POINTS).map(|k| density(k).max(0.0) * step).sum()
 }
 

@@ -92,7 +92,6 @@ fn averages_of_water_droplets_agree_with_the_table() {
             assert!(error < tolerance, "p {value} differs by {error} at {angle}° in {row}");
         }
         let [integral, first] = moments(&table);
-        eprintln!("{} i {integral} g {}", average.angles.len(), first / integral - average.g);
         assert!(
             (integral - 1.0).abs() < 2e-4 && (first / integral - average.g).abs() < 1e-4,
             "{integral} {first} {row}"

@@ -9,6 +9,7 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod phase;
 mod rgb;
 mod rules;
 mod transform;
@@ -21,13 +22,14 @@ pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
     PointLightDescription, SkyDescription, SunLightDescription,
 };
-pub use medium::{Coefficients, MediumDescription, PhaseDescription};
+pub use medium::{Coefficients, MediumDescription};
+pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
 pub use transform::{Scale, TransformDescription};
 pub use volume::{
-    BoxShape, GridMeaning, ProceduralDescription, RawType, SlabShape, SphereShape, Storage,
-    VolumeDescription, VolumeSource,
+    AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,
+    SphereShape, Storage, VolumeDescription, VolumeSource,
 };
 
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! `[[volume]]`: a grid from a file, a homogeneous shape or a procedural cloud.
+//! `[[volume]]`: a grid from a file, a homogeneous shape, an atmosphere or a procedural cloud.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::medium::MediumDescription;
 use super::transform::TransformDescription;
 
-/// A volume: exactly one of `file`, `box`, `sphere`, `slab`, `procedural`, and the optical properties of what
-/// fills it.
+/// A volume: exactly one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`, and the optical properties
+/// of what fills it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VolumeDescription {
     /// A name for messages.
@@ -23,6 +23,9 @@ pub struct VolumeDescription {
     /// What the grid's values are; by default what the file says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub values: Option<GridMeaning>,
+    /// What lies between the centres of voxels; by default `trilinear`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filter: Option<GridFilter>,
     /// Voxels along x, y and z of a .raw file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
@@ -39,6 +42,9 @@ pub struct VolumeDescription {
     /// A homogeneous layer, unbounded in x and z.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slab: Option<SlabShape>,
+    /// A layer whose density falls exponentially with height, unbounded in x and z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub atmosphere: Option<AtmosphereShape>,
     /// A volume that is computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub procedural: Option<ProceduralDescription>,
@@ -64,6 +70,8 @@ pub enum VolumeSource<'a> {
     Sphere(&'a SphereShape),
     /// Density 1 in a layer.
     Slab(&'a SlabShape),
+    /// Density falling with height.
+    Atmosphere(&'a AtmosphereShape),
     /// Computed.
     Procedural(&'a ProceduralDescription),
 }
@@ -76,6 +84,7 @@ impl VolumeDescription {
             ("box", self.cuboid.as_ref().map(VolumeSource::Box)),
             ("sphere", self.sphere.as_ref().map(VolumeSource::Sphere)),
             ("slab", self.slab.as_ref().map(VolumeSource::Slab)),
+            ("atmosphere", self.atmosphere.as_ref().map(VolumeSource::Atmosphere)),
             ("procedural", self.procedural.as_ref().map(VolumeSource::Procedural)),
         ]
         .into_iter()
@@ -85,7 +94,7 @@ impl VolumeDescription {
             [(_, source)] => Ok(*source),
             [] => Err((
                 "",
-                "the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `procedural`"
+                "the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`"
                     .to_owned(),
             )),
             [(first, _), (second, _), ..] => Err((
@@ -107,6 +116,17 @@ pub enum GridMeaning {
     /// A signed distance in world units (a level set): density 1 inside, 0 outside, with a ramp one voxel
     /// wide about the surface.
     SignedDistance,
+}
+
+/// What lies between the centres of voxels.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GridFilter {
+    /// A mixture of the eight voxels around.
+    #[default]
+    Trilinear,
+    /// Each voxel is a box of one value, with its centre in the middle.
+    Nearest,
 }
 
 /// Number type of a .raw file; little endian.
@@ -165,6 +185,21 @@ pub struct SlabShape {
     pub bottom: f64,
     /// y of the upper face.
     pub top: f64,
+}
+
+/// The layer `bottom < y < top` with density exp(-(y - bottom)/scale_height): 1 at the bottom, 1/e a scale height
+/// above.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AtmosphereShape {
+    /// y of the lower face.
+    #[serde(default)]
+    pub bottom: f64,
+    /// y of the upper face; without one the layer has no end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub top: Option<f64>,
+    /// Height over which the density falls by a factor e.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub scale_height: f64,
 }
 
 /// A volume that is computed.

@@ -150,15 +150,15 @@ pub(super) fn collide(rays: &mut Rays, volumes: &[FastVolume], tentative: &List,
     happened.clear();
     for &slot in tentative.slots() {
         let i = usize::from(slot) % POOL;
-        let Kind::Grid(FastGrid { grid, .. }) = &volumes[rays.volume[i] as usize].kind else {
+        let Kind::Grid(FastGrid { grid, spread, .. }) = &volumes[rays.volume[i] as usize].kind else {
             continue;
         };
         let [ux, uy, uz] = rays.random[i].f32x3();
         let t = rays.t[i];
         let voxel = [
-            (rays.ox[i] + t * rays.dx[i] + ux) as i32 as u32,
-            (rays.oy[i] + t * rays.dy[i] + uy) as i32 as u32,
-            (rays.oz[i] + t * rays.dz[i] + uz) as i32 as u32,
+            (rays.ox[i] + t * rays.dx[i] + spread * ux) as i32 as u32,
+            (rays.oy[i] + t * rays.dy[i] + spread * uy) as i32 as u32,
+            (rays.oz[i] + t * rays.dz[i] + spread * uz) as i32 as u32,
         ];
         let density = match grid.bricks() {
             Bricks::U8(bricks) => grid.local_voxel(bricks, voxel),

@@ -1,7 +1,19 @@
-//! Transmittance in closed form, for a homogeneous medium: T = exp(−μt·length) (Beer's law).
+//! Transmittance in closed form: T = exp(−τ) (Bouguer 1729, Beer 1852), with τ = μt·length in a homogeneous medium and a
+//! formula for τ in others.
 //!
-//! Exact; no lookups.
+//! Exact; no variance. No lookups but one for each voxel of a grid that is not interpolated.
 
-pub(super) fn transmittance(mu_t: f64, interval: Option<(f64, f64)>) -> f64 {
-    interval.map_or(1.0, |(enter, leave)| (-mu_t * (leave - enter)).exp())
+use crate::along_ray::{AlongRay, Lookups};
+use crate::properties::{MajorantUse, Need, Properties};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "closed-form",
+    unbiased: true,
+    majorant: MajorantUse::None,
+    needs: &[Need::ClosedForm],
+    source: "Beer 1852",
+};
+
+pub(super) fn transmittance(ray: &AlongRay, lookups: &mut Lookups) -> f64 {
+    (-ray.thickness(f64::INFINITY, lookups)).exp()
 }

@@ -41,7 +41,7 @@ fn optical_thickness(volume: &Volume, ray: &Ray, end: f64) -> Vec<(f64, f64)> {
         let (from, to) = (pair[0], pair[1]);
         // Just inside: where the grid is cut at its domain the field steps.
         let inside = 1e-9 * (to - from);
-        let at = |t: f64| volume.medium.mu_t * grid.trilinear(local.at(t));
+        let at = |t: f64| volume.medium.mu_t * grid.value(local.at(t));
         tau += (to - from) / 6.0 * (at(from + inside) + 4.0 * at(0.5 * (from + to)) + at(to - inside));
         table.push((to, tau));
     }
@@ -246,7 +246,7 @@ fn segments_follow_each_other_and_their_bounds_hold() {
                 reached = segment.end;
                 for i in 1..16 {
                     let t = segment.start + f64::from(i) / 16.0 * (segment.end - segment.start);
-                    let value = grid.trilinear(local.at(t));
+                    let value = grid.value(local.at(t));
                     let (min, max) = (f64::from(segment.bounds.min), f64::from(segment.bounds.max));
                     assert!((min..=max * (1.0 + 1e-12)).contains(&value), "{name}: {value} in {segment:?}");
                 }

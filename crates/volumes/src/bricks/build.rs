@@ -5,6 +5,7 @@
 
 use super::BrickGrid;
 use super::bounds::{Bounds, Content, Entry, INDEX_LIMIT};
+use super::filter::Filter;
 use super::storage::{Bricks, Storage};
 use crate::{Grid, GridValues, LEAF_VOXELS, Tree};
 use glam::DVec3;
@@ -130,7 +131,7 @@ fn build<T: Scalar>(
     }
 
     let active = active_box(tree);
-    let margin = if background == 0.0 { 1.0 } else { 0.5 };
+    let margin = Filter::Trilinear.margin(background);
     let domain = match active {
         Some([low, high]) => {
             [low.map(|x| x as f64 - margin), high.map(|x| x as f64 + margin)].map(DVec3::from_array)
@@ -173,6 +174,7 @@ fn build<T: Scalar>(
         entries,
         constants,
         bricks,
+        filter: Filter::Trilinear,
         domain,
         background,
         bounds,

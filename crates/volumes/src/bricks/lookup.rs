@@ -80,7 +80,7 @@ impl BrickGrid {
     }
 
     /// The field at index coordinates `p`: eight voxels mixed by their trilinear weights.
-    pub fn trilinear(&self, p: DVec3) -> f64 {
+    pub(super) fn trilinear(&self, p: DVec3) -> f64 {
         let base = p.floor();
         let f = p - base;
         let i = base.as_ivec3();

@@ -16,6 +16,10 @@
 //! the footprint reaches one voxel beyond a cell on its upper sides only. One voxel, drawn with its trilinear
 //! weight as `floor(p + u)` with u uniform in [0, 1)³, is an unbiased estimate of the filtered value at `p`.
 //!
+//! A grid can be looked at without a filter instead ([`Filter::Nearest`]): constant in each voxel. Its coordinates are
+//! then half a voxel further on, so that voxel `b` fills [b, b + 1)³ and is `floor(p)`; cells and bounds hold as they
+//! are.
+//!
 //! # Values
 //! Stored as f32; as f16 scaled by a power of two (relative error 2^-11, exact for half files whose range fits);
 //! or as u8 with an offset and a step of its own in each brick (error at most 1/510 of the brick's range).
@@ -29,12 +33,14 @@
 
 mod bounds;
 mod build;
+mod filter;
 mod lookup;
 mod storage;
 mod traverse;
 
 pub use bounds::Bounds;
 pub use build::BuildError;
+pub use filter::Filter;
 pub use lookup::Cell;
 pub use storage::{BrickValues, Bricks, F16Bricks, F32Bricks, Storage, U8Bricks};
 pub use traverse::Segment;
@@ -56,6 +62,7 @@ pub struct BrickGrid {
     /// Values of constant cells.
     constants: Vec<f32>,
     bricks: Bricks,
+    filter: Filter,
     /// Where the field may differ from the background, in index coordinates.
     domain: [DVec3; 2],
     background: f32,
@@ -65,11 +72,11 @@ pub struct BrickGrid {
 }
 
 impl BrickGrid {
-    /// Least and greatest corner, in index coordinates, of the region that rays need to look at.
+    /// Least and greatest corner, in the coordinates of the filter, of the region that rays need to look at.
     ///
     /// With background 0 this is the box of active voxels and one voxel around it, where the filtered field fades
     /// out. With another background, which would fill all space, the field is cut at the faces of the active
-    /// voxels.
+    /// voxels, as is one without a filter.
     pub fn domain(&self) -> [DVec3; 2] {
         self.domain
     }

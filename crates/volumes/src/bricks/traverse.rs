@@ -16,7 +16,7 @@ pub struct Segment {
 }
 
 impl BrickGrid {
-    /// Calls `visit` with each segment of the ray `origin + t·direction` (index coordinates, any length of
+    /// Calls `visit` with each segment of the ray `origin + t·direction` (the filter's coordinates, any length of
     /// `direction`) for `t` in [start, end], in order and without gaps inside the grid's domain, until `visit`
     /// breaks.
     ///
