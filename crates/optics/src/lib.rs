@@ -14,5 +14,5 @@ mod spectrum;
 pub mod uplift;
 
 pub use phase_function::{PhaseFunction, SpectralPhase};
-pub use refractive_index::{Material, RefractiveIndex, RefractiveIndexTable};
+pub use refractive_index::{Material, RefractiveIndex, RefractiveIndexTable, Substance};
 pub use spectrum::{Spectrum, SpectrumError};

@@ -8,11 +8,14 @@
 //! phase function.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 use super::angle_grid::{forward_angles, refined};
 use super::radius_grid::RadiusGrid;
 use super::sums::{Spheres, Sums};
 use super::{MieError, SizeDistribution, SizeLaw};
+use crate::PhaseFunction;
+use crate::phase_function::TabulatedPhase;
 use crate::refractive_index::RefractiveIndex;
 
 /// Optical properties, at one wavelength, of the mean particle of a size distribution.
@@ -101,6 +104,11 @@ impl MieAverage {
     /// Mean extinction cross section, µm².
     pub fn c_ext(&self) -> f64 {
         self.q_ext * self.area
+    }
+
+    /// The phase function, to be sampled.
+    pub fn phase_function(&self) -> Result<PhaseFunction, MieError> {
+        Ok(PhaseFunction::Tabulated(Arc::new(TabulatedPhase::from_cosines(&self.rows())?)))
     }
 
     /// Rows of cos θ, from 1 to −1, and the phase function there, as tables of phase functions take them.

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::phase_function::UnsoundTable;
+
 /// Why optical properties cannot be computed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MieError {
@@ -52,4 +54,7 @@ pub enum MieError {
         /// The wavelength that was asked for, nm.
         wavelength: f64,
     },
+    /// A phase function that is none.
+    #[error("the phase function cannot be tabulated: {0}")]
+    PhaseFunction(#[from] UnsoundTable),
 }

@@ -4,8 +4,7 @@
 
 use std::sync::LazyLock;
 
-use super::{RefractiveIndex, RefractiveIndexTable};
-use crate::mie::MieError;
+use super::RefractiveIndexTable;
 
 /// A material whose refractive index is built in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -73,19 +72,6 @@ impl Material {
         }
     }
 
-    /// The refractive index at a wavelength in nm.
-    pub fn refractive_index(self, wavelength: f64) -> Result<RefractiveIndex, MieError> {
-        let table = self.table();
-        let [first, last] = table.range();
-        let material = || self.name().to_owned();
-        table.at(wavelength).ok_or_else(|| MieError::Wavelength {
-            material: material(),
-            first,
-            last,
-            wavelength,
-        })
-    }
-
     /// The table of its refractive index.
     pub fn table(self) -> &'static RefractiveIndexTable {
         static TABLES: LazyLock<[RefractiveIndexTable; 8]> = LazyLock::new(|| {
@@ -120,17 +106,15 @@ mod tests {
         for material in Material::ALL {
             assert_eq!(Material::from_name(material.name()), Some(material));
             for wavelength in [360.0, 555.5, 830.0] {
-                material.refractive_index(wavelength).unwrap();
+                assert!(material.table().at(wavelength).is_some_and(|m| m.check().is_ok()));
             }
         }
-        let error = Material::Soot.refractive_index(200.0).unwrap_err().to_string();
-        assert!(error.contains("soot is known from 250 to 2500 nm, not at 200 nm"), "{error}");
     }
 
     /// Rows of Segelstein's table between which the index of water at 550 nm lies.
     #[test]
     fn water_at_550_nm_lies_between_its_rows() {
-        let m = Material::Water.refractive_index(550.0).unwrap();
+        let m = Material::Water.table().at(550.0).unwrap();
         assert!((m.n - 1.3359435).abs() < 1e-7 && (m.k / 2.4611102e-9 - 1.0).abs() < 1e-5, "{m:?}");
     }
 }

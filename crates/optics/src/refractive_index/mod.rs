@@ -1,9 +1,11 @@
 //! Refractive indices m = n + ik of materials over wavelength; k ≥ 0 absorbs.
 
 mod material;
+mod substance;
 mod table;
 
 pub use material::Material;
+pub use substance::Substance;
 pub use table::{RefractiveIndexTable, TableError};
 
 use crate::mie::MieError;
