@@ -5,11 +5,13 @@
 //! linear Rec. 709.
 
 mod automatic;
+mod call;
 mod camera;
 mod film;
 mod lights;
 mod medium;
 mod phase;
+pub mod phase_spec;
 mod rgb;
 mod rules;
 mod transform;

@@ -56,6 +56,7 @@ impl Slab {
             albedo: DVec3::splat(self.albedo),
             phase_function: self.phase_function.clone(),
             emission: DVec3::ZERO,
+            chromatic: None,
         };
         let density = Density::Slab { bottom: -self.tau, top: 0.0 };
         vec![Volume { name: "slab".into(), world_to_local: DAffine3::IDENTITY, density, medium }]
