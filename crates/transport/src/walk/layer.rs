@@ -116,10 +116,12 @@ impl Walk for Layer<'_> {
         loop {
             match self.space().fly(&mut photon.ray, random) {
                 Flight::Collision(volume) => {
+                    let mut absorbed = 0.0;
                     if let Some(limit) = &self.depth_limit {
-                        photon.weight *= limit.lift(&mut photon.ray.origin, self.faces[1]);
+                        let left = limit.lift(&mut photon.ray.origin, self.faces[1]);
+                        absorbed += photon.absorb(left);
                     }
-                    let absorbed = photon.absorb(volume.medium.albedo[self.channel]);
+                    absorbed += photon.absorb(volume.medium.albedo[self.channel]);
                     self.score(ABSORBED, photon.ray.origin, absorbed, scores);
                     if !photon.survives_roulette(random) {
                         return;

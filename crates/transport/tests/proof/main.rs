@@ -10,4 +10,5 @@ mod same_bits;
 mod scenes;
 mod slab;
 mod statistics;
+mod walk;
 mod white_furnace;
