@@ -1,7 +1,15 @@
-//! Phase functions and coefficients of participating media. Knows no geometry.
+//! What participating media do to light at a point: phase functions, coefficients, spectra and colour. Knows no
+//! geometry.
 
 #![forbid(unsafe_code)]
 
+pub mod albedo_inversion;
+pub mod cie;
 pub mod phase_function;
+pub mod planck;
+pub mod presets;
+mod spectrum;
+pub mod uplift;
 
-pub use phase_function::PhaseFunction;
+pub use phase_function::{PhaseFunction, SpectralPhase};
+pub use spectrum::{Spectrum, SpectrumError};

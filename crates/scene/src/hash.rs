@@ -31,6 +31,11 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.film.layers = None;
     canonical.render =
         RenderDescription { max_depth: description.render.max_depth, ..RenderDescription::default() };
+    let media =
+        canonical.medium.iter_mut().chain(canonical.volumes.iter_mut().map(|volume| &mut volume.medium));
+    for file in media.filter_map(|medium| medium.phase.file_mut()) {
+        *file = content_hash(&folder.join(&file))?;
+    }
     for volume in &mut canonical.volumes {
         volume.name = None;
         if let Some(file) = &mut volume.file {

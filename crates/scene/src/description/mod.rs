@@ -9,6 +9,7 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod phase;
 mod rgb;
 mod rules;
 mod transform;
@@ -21,7 +22,8 @@ pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
     PointLightDescription, SkyDescription, SunLightDescription,
 };
-pub use medium::{Coefficients, MediumDescription, PhaseDescription};
+pub use medium::{Coefficients, MediumDescription};
+pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
 pub use transform::{Scale, TransformDescription};

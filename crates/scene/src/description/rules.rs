@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    CameraDescription, LightDescription, MediumDescription, SceneDescription, SkyDescription,
-    TransformDescription, VolumeDescription, VolumeSource,
+    CameraDescription, LightDescription, MediumDescription, PhaseDescription, SceneDescription,
+    SkyDescription, TransformDescription, VolumeDescription, VolumeSource,
 };
 
 /// A key whose value contradicts the rest of the scene.
@@ -22,7 +22,7 @@ impl SceneDescription {
         let mut found = Findings { here: Vec::new(), violations: Vec::new() };
         found.within("camera", |found| camera(found, &self.camera));
         if let Some(medium) = &self.medium {
-            found.within("medium", |found| medium_coefficients(found, medium));
+            found.within("medium", |found| medium_rules(found, medium));
         }
         for (index, description) in self.volumes.iter().enumerate() {
             found.within("volume", |found| {
@@ -95,14 +95,17 @@ fn camera(found: &mut Findings, camera: &CameraDescription) {
     }
 }
 
-fn medium_coefficients(found: &mut Findings, medium: &MediumDescription) {
+fn medium_rules(found: &mut Findings, medium: &MediumDescription) {
     if let Err((key, message)) = medium.coefficients() {
         found.report(key, message);
+    }
+    if let PhaseDescription::Sggx { axis, .. } = medium.phase {
+        found.within("phase", |found| found.report_zero("axis", axis));
     }
 }
 
 fn volume(found: &mut Findings, volume: &VolumeDescription) {
-    medium_coefficients(found, &volume.medium);
+    medium_rules(found, &volume.medium);
     if let Some(transform) = &volume.transform {
         found.within("transform", |found| transform_is_invertible(found, transform));
     }
