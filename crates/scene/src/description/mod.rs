@@ -9,6 +9,8 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod meter;
+mod meter_rules;
 mod phase;
 mod rgb;
 mod rules;
@@ -23,6 +25,10 @@ pub use lights::{
     PointLightDescription, SkyDescription, SunLightDescription,
 };
 pub use medium::{Coefficients, MediumDescription};
+pub use meter::{
+    BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
+    RadianceMeterDescription,
+};
 pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
@@ -60,6 +66,9 @@ pub struct SceneDescription {
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,
+    /// What `tyndall measure` measures.
+    #[serde(default, rename = "meter", skip_serializing_if = "Vec::is_empty")]
+    pub meters: Vec<MeterDescription>,
 }
 
 fn default_unit() -> String {
