@@ -5,6 +5,7 @@
 //! linear Rec. 709.
 
 mod automatic;
+mod call;
 mod camera;
 mod film;
 mod lights;
@@ -12,6 +13,7 @@ mod medium;
 mod meter;
 mod meter_rules;
 mod phase;
+pub mod phase_spec;
 mod rgb;
 mod rules;
 mod transform;

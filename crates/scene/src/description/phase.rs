@@ -1,5 +1,6 @@
 //! How a medium spreads scattered light over directions: the phase functions of `tyndall-optics` by name.
 
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -96,6 +97,16 @@ fn up() -> [f64; 3] {
 }
 
 impl PhaseDescription {
+    /// A key whose value the ranges allow and that still makes no sense, and the mend.
+    pub fn violation(&self) -> Option<(&'static str, String)> {
+        match self {
+            Self::Sggx { axis, .. } if DVec3::from_array(*axis).try_normalize().is_none() => {
+                Some(("axis", "`axis` is a direction and must not be [0, 0, 0]".into()))
+            }
+            _ => None,
+        }
+    }
+
     /// The file that it is read from, if it is.
     pub fn file(&self) -> Option<&str> {
         match self {

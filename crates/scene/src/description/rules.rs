@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::meter_rules::meters;
 use super::{
-    CameraDescription, LightDescription, MediumDescription, PhaseDescription, SceneDescription,
-    SkyDescription, TransformDescription, VolumeDescription, VolumeSource,
+    CameraDescription, LightDescription, MediumDescription, SceneDescription, SkyDescription,
+    TransformDescription, VolumeDescription, VolumeSource,
 };
 
 /// A key whose value contradicts the rest of the scene.
@@ -101,8 +101,8 @@ fn medium_rules(found: &mut Findings, medium: &MediumDescription) {
     if let Err((key, message)) = medium.coefficients() {
         found.report(key, message);
     }
-    if let PhaseDescription::Sggx { axis, .. } = medium.phase {
-        found.within("phase", |found| found.report_zero("axis", axis));
+    if let Some((key, message)) = medium.phase.violation() {
+        found.within("phase", |found| found.report(key, message));
     }
 }
 
