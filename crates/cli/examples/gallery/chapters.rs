@@ -125,15 +125,15 @@ pub const CHAPTERS: &[Chapter] = &[
         &[
             panel("scene.toml --set volume.0.phase.g=-0.5", "sun behind the cloud, g = -0.5"),
             panel("scene.toml", "g = 0: isotropic"),
-            panel("scene.toml --set volume.0.phase.g=0.85", "g = 0.85: water droplets"),
+            panel("scene.toml --set volume.0.phase.g=0.7", "g = 0.7: forward"),
             panel(
                 "scene.toml --set light.0.direction=[-0.5,-0.45,-1.0] --set volume.0.phase.g=-0.5",
                 "sun behind the viewer, g = -0.5",
             ),
             panel("scene.toml --set light.0.direction=[-0.5,-0.45,-1.0]", "g = 0: isotropic"),
             panel(
-                "scene.toml --set light.0.direction=[-0.5,-0.45,-1.0] --set volume.0.phase.g=0.85",
-                "g = 0.85: water droplets",
+                "scene.toml --set light.0.direction=[-0.5,-0.45,-1.0] --set volume.0.phase.g=0.7",
+                "g = 0.7: forward",
             ),
         ],
     ),
