@@ -1,7 +1,7 @@
 //! Charts as SVG files, which any browser shows: curves over axes with linear or logarithmic scales, and polar ones.
 //!
 //! A chart is drawn from its parts: [`Svg`] is the sheet, a [`Scale`] turns numbers into places on it, [`Axes`] and
-//! [`Polar`] are frames that take curves, [`legend`] says which is which.
+//! [`Polar`] are frames that take curves, [`legend()`] says which is which.
 
 mod axes;
 mod legend;
