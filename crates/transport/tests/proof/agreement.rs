@@ -10,9 +10,10 @@ use std::sync::Arc;
 use tyndall_film::Film;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Density, Scene};
+use tyndall_transport::RenderOptions;
 use tyndall_volumes::{BrickGrid, LEAF_VOXELS, Leaf, Storage, Tree};
 
-use crate::rendering::render;
+use crate::rendering::{options, render_with};
 use crate::scenes::{scene, scene_in, write_npy, write_random_npy};
 use crate::statistics::{mean_and_error, normal_from_student, two_sided_quantile};
 
@@ -23,7 +24,7 @@ const REGION: u32 = 8;
 const BATCHES: u64 = 40;
 const SAMPLES: u64 = 6;
 
-const HEAD: &str = "camera = { position = [0.3, 0.2, 4], target = [0, 0, 0], vertical_fov = 34 }
+pub const HEAD: &str = "camera = { position = [0.3, 0.2, 4], target = [0, 0, 0], vertical_fov = 34 }
     film = { resolution = [24, 24] }\n";
 
 /// Means over each region of each quantity that a film holds, in a fixed order, with their names.
@@ -59,10 +60,13 @@ fn region_means(film: &Film) -> Vec<(String, f64)> {
 }
 
 /// For each region and quantity its name and its values in all batches.
-fn batches(scene: &Scene, integrator: Integrator, seed: u64) -> Vec<(String, Vec<f64>)> {
-    let mut all: Vec<(String, Vec<f64>)> = Vec::new();
-    for batch in 0..BATCHES {
-        let film = render(scene, integrator, seed, batch * SAMPLES..(batch + 1) * SAMPLES);
+pub type Batches = Vec<(String, Vec<f64>)>;
+
+/// A number of independent films.
+pub fn batches(scene: &Scene, options: RenderOptions, number: u64) -> Batches {
+    let mut all: Batches = Vec::new();
+    for batch in 0..number {
+        let film = render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES);
         let means = region_means(&film);
         if all.is_empty() {
             all = means.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
@@ -75,12 +79,19 @@ fn batches(scene: &Scene, integrator: Integrator, seed: u64) -> Vec<(String, Vec
 }
 
 /// Fails if any region of any quantity differs significantly.
-fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integrator)) {
-    let (a, b) = (batches(first.0, first.1, 31), batches(second.0, second.1, 32));
+fn assert_same(name: &str, first: (&Scene, RenderOptions), second: (&Scene, RenderOptions)) {
+    let with_seed = |options, seed| RenderOptions { seed, ..options };
+    let a = batches(first.0, with_seed(first.1, 31), BATCHES);
+    let b = batches(second.0, with_seed(second.1, 32), BATCHES);
+    assert_same_batches(name, &a, &b);
+}
+
+/// The same with films that are there already.
+pub fn assert_same_batches(name: &str, a: &Batches, b: &Batches) {
     let limit = two_sided_quantile(1e-3 / a.len() as f64);
     let mut lit = 0;
     let mut worst: f64 = 0.0;
-    for ((quantity, a), (_, b)) in a.iter().zip(&b) {
+    for ((quantity, a), (_, b)) in a.iter().zip(b) {
         let ((mean_a, error_a), (mean_b, error_b)) = (mean_and_error(a), mean_and_error(b));
         lit += usize::from(mean_a > 0.0 && error_a > 0.0);
         let (va, vb) = (error_a * error_a, error_b * error_b);
@@ -90,14 +101,12 @@ fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integra
         if difference == 0.0 {
             continue;
         }
-        let degrees = (va + vb).powi(2) / (va * va + vb * vb).max(f64::MIN_POSITIVE) * (BATCHES - 1) as f64;
+        let degrees = (va + vb).powi(2) / (va * va + vb * vb).max(f64::MIN_POSITIVE) * (a.len() - 1) as f64;
         let z = normal_from_student(difference / error, degrees.max(1.0));
         worst = worst.max(z.abs());
         assert!(
             z.abs() < limit,
-            "{name}: {quantity}: {:?} has {mean_a} +- {error_a}, {:?} {mean_b} +- {error_b}, z = {z}",
-            first.1,
-            second.1
+            "{name}: {quantity}: {mean_a} +- {error_a} and {mean_b} +- {error_b}, z = {z}"
         );
     }
     eprintln!("{name}: {lit} of {} quantities are lit, greatest |z| {worst:.2} below {limit:.2}", a.len());
@@ -105,7 +114,8 @@ fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integra
 }
 
 fn assert_integrators_agree(name: &str, scene: &Scene) {
-    assert_same(name, (scene, Integrator::Reference), (scene, Integrator::Fast));
+    let by = |integrator| (scene, options(integrator, 0));
+    assert_same(name, by(Integrator::Reference), by(Integrator::Fast));
 }
 
 const DEPTHS: [Option<u32>; 3] = [Some(1), Some(2), None];
@@ -385,6 +395,7 @@ fn a_box_as_a_shape_and_as_a_grid_of_ones() {
     let mut as_grid = as_box.clone();
     as_grid.volumes[0].density = Density::Grid(Arc::new(grid));
     for integrator in [Integrator::Reference, Integrator::Fast] {
-        assert_same("box and grid", (&as_box, Integrator::Reference), (&as_grid, integrator));
+        let as_box = (&as_box, options(Integrator::Reference, 0));
+        assert_same("box and grid", as_box, (&as_grid, options(integrator, 0)));
     }
 }
