@@ -3,7 +3,7 @@
 mod estimators;
 pub mod input;
 mod progress;
-mod stop;
+pub mod stop;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -129,6 +129,9 @@ pub fn run(args: Args) -> miette::Result<Done> {
     }
     if args.integrator.is_none() && args.estimators.integrator().is_some() {
         tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
+    }
+    if built.scene.is_chromatic() {
+        tell("note: some extinction or phase function depends on colour: the spectral integrator renders");
     }
     let mut picture = open_picture(&args, description, &input.folder, estimators, film)?;
     let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));

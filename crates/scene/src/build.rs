@@ -4,19 +4,19 @@ use glam::{DAffine3, DVec3};
 use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
-use tyndall_optics::PhaseFunction;
 use tyndall_volumes::{
     AxisOrder, BrickGrid, ByteOrder, Element, Filter, Grid, GridClass, GridSelection, GridValues, RawShape,
     ReadError, ReadRequest,
 };
 
 use crate::description::{
-    AtmosphereShape, GridFilter, GridMeaning, MediumDescription, PhaseDescription, ProceduralDescription,
+    AtmosphereShape, Coefficients, GridFilter, GridMeaning, MediumDescription, ProceduralDescription,
     RawType, Storage, VolumeDescription, VolumeSource,
 };
 use crate::light::build_lights;
+use crate::phase::{build_phase, grey_phase};
 use crate::ready::light_probabilities;
-use crate::{Camera, Density, Medium, Scene, SceneDescription, SceneError, Volume, procedural};
+use crate::{Camera, Density, Medium, Observer, Scene, SceneDescription, SceneError, Volume, procedural};
 
 /// A scene, and what the user should know of how it came about.
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
             name: "medium".into(),
             world_to_local: DAffine3::IDENTITY,
             density: Density::Everywhere,
-            medium: ready_medium(medium, "medium")?,
+            medium: ready_medium(medium, "medium", folder, &mut notes)?,
         });
     }
     for (number, volume) in description.volumes.iter().enumerate() {
@@ -63,6 +63,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
         lights: lights.lights,
         light_probabilities,
         max_depth: description.render.max_depth,
+        observer: Observer::Rgb,
     };
     Ok(BuiltScene { scene, grids, notes })
 }
@@ -115,7 +116,7 @@ fn build_volume(
             "its transform is singular: it flattens the volume; give scales other than 0",
         ));
     }
-    let medium = ready_medium(&description.medium, &name)?;
+    let medium = ready_medium(&description.medium, &name, folder, notes)?;
     Ok(Volume { name, world_to_local, density, medium })
 }
 
@@ -125,15 +126,19 @@ fn grid_density(bricks: BrickGrid, grid: &Grid) -> (Density, DAffine3) {
     (Density::Grid(Arc::new(bricks)), grid.index_to_world * to_index)
 }
 
-fn ready_medium(description: &MediumDescription, name: &str) -> Result<Medium, SceneError> {
+fn ready_medium(
+    description: &MediumDescription,
+    name: &str,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Medium, SceneError> {
     let coefficients =
         description.coefficients().map_err(|(_, message)| SceneError::file(Path::new(name), message))?;
-    let phase_function = match description.phase {
-        PhaseDescription::Isotropic => PhaseFunction::Isotropic,
-        PhaseDescription::Hg { g } => PhaseFunction::HenyeyGreenstein { g },
-    };
+    let (phase_function, note) = grey_phase(&build_phase(&description.phase, folder)?);
+    notes.extend(note.map(|note| format!("{name}: {note}")));
     let emission = description.emission.map_or(DVec3::ZERO, |emission| emission.channels());
-    Ok(Medium { mu_t: coefficients.mu_t, albedo: coefficients.albedo, phase_function, emission })
+    let Coefficients { mu_t, albedo } = coefficients;
+    Ok(Medium { mu_t, albedo, phase_function, emission, chromatic: None })
 }
 
 /// Reads the grid that the description names, or the one that is most likely meant.

@@ -23,14 +23,20 @@ impl fmt::Display for SceneHash {
 ///
 /// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they
 /// name. It leaves out what does not change the expected picture: where the files are, names, unit, comments,
-/// samples per pixel, seed, integrator, exposure and layers.
+/// samples per pixel, seed, integrator, exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     canonical.unit.clear();
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
+    canonical.meters.clear();
     canonical.render =
         RenderDescription { max_depth: description.render.max_depth, ..RenderDescription::default() };
+    let media =
+        canonical.medium.iter_mut().chain(canonical.volumes.iter_mut().map(|volume| &mut volume.medium));
+    for file in media.filter_map(|medium| medium.phase.file_mut()) {
+        *file = content_hash(&folder.join(&file))?;
+    }
     for volume in &mut canonical.volumes {
         volume.name = None;
         if let Some(file) = &mut volume.file {

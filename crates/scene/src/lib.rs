@@ -7,11 +7,13 @@
 
 mod build;
 mod camera;
+mod channels;
 pub mod description;
 mod error;
 mod hash;
 pub mod light;
 mod medium;
+mod phase;
 pub mod procedural;
 mod ready;
 pub mod sky;
@@ -19,10 +21,12 @@ mod toml;
 
 pub use self::build::{BuiltScene, build, choose_density};
 pub use self::camera::{Camera, Ray};
+pub use self::channels::{ChannelMedium, ChannelPhases, Channels, Observer};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
 pub use self::hash::{SceneHash, scene_hash};
 pub use self::light::{Light, LightSample};
-pub use self::medium::{Density, Medium, Volume};
+pub use self::medium::{ChromaticMedium, Density, Medium, Volume};
+pub use self::phase::{build_phase, grey_phase};
 pub use self::ready::Scene;
 pub use self::toml::{SceneDocument, json_schema};

@@ -10,7 +10,8 @@ use crate::Ray;
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient μt, 1/scene unit.
+    /// Extinction coefficient μt, 1/scene unit: of oriented particles, the greatest over all directions (see
+    /// [`Medium::mu_t_along`]); of a chromatic medium, the mean of its channels.
     pub mu_t: f64,
     /// Single-scattering albedo μs/μt, linear RGB in 0…1.
     pub albedo: DVec3,
@@ -18,6 +19,24 @@ pub struct Medium {
     pub phase_function: PhaseFunction,
     /// Emitted radiance Le; the source term of the volume rendering equation is μa·Le.
     pub emission: DVec3,
+    /// What depends on colour beside albedo and emission; it takes the place of `mu_t` and `phase_function`.
+    pub chromatic: Option<Arc<ChromaticMedium>>,
+}
+
+/// What of a medium depends on colour, beside its albedo and emission.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChromaticMedium {
+    /// Extinction coefficient μt in red, green and blue, 1/scene unit.
+    pub mu_t: DVec3,
+    /// Phase functions of red, green and blue, if they differ.
+    pub phase_functions: Option<[PhaseFunction; 3]>,
+}
+
+impl Medium {
+    /// Extinction coefficient for light that travels along the unit vector `direction`, or against it.
+    pub fn mu_t_along(&self, direction: DVec3) -> f64 {
+        self.mu_t * self.phase_function.projected_area(direction)
+    }
 }
 
 /// Where the density of a volume comes from, in the volume's local coordinates.
@@ -236,6 +255,7 @@ mod tests {
             albedo: DVec3::ONE,
             phase_function: PhaseFunction::Isotropic,
             emission: DVec3::ZERO,
+            chromatic: None,
         };
         Volume { name: "test".into(), world_to_local, density, medium }
     }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::PhaseDescription;
 use super::rgb::{Rgb, fraction};
 
 /// The optical properties of a medium. Coefficients are given as exactly one of the pairs `mu_t` and
@@ -37,21 +38,6 @@ pub struct MediumDescription {
     /// Radiance Le of the glowing medium; the source term is `mu_a Le`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emission: Option<Rgb>,
-}
-
-/// How scattered light is spread over directions.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum PhaseDescription {
-    /// Equally in all directions.
-    #[default]
-    Isotropic,
-    /// Henyey and Greenstein 1941.
-    Hg {
-        /// Mean cosine of the scattering angle; above 0 is forward.
-        #[schemars(extend("exclusiveMinimum" = -1, "exclusiveMaximum" = 1))]
-        g: f64,
-    },
 }
 
 /// Coefficients ready for use: grey extinction, coloured albedo.

@@ -5,10 +5,15 @@
 //! linear Rec. 709.
 
 mod automatic;
+mod call;
 mod camera;
 mod film;
 mod lights;
 mod medium;
+mod meter;
+mod meter_rules;
+mod phase;
+pub mod phase_spec;
 mod rgb;
 mod rules;
 mod transform;
@@ -21,7 +26,12 @@ pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
     PointLightDescription, SkyDescription, SunLightDescription,
 };
-pub use medium::{Coefficients, MediumDescription, PhaseDescription};
+pub use medium::{Coefficients, MediumDescription};
+pub use meter::{
+    BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
+    RadianceMeterDescription,
+};
+pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
 pub use transform::{Scale, TransformDescription};
@@ -58,6 +68,9 @@ pub struct SceneDescription {
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,
+    /// What `tyndall measure` measures.
+    #[serde(default, rename = "meter", skip_serializing_if = "Vec::is_empty")]
+    pub meters: Vec<MeterDescription>,
 }
 
 fn default_unit() -> String {

@@ -45,7 +45,7 @@ impl<'a> Stretch<'a> {
     pub fn through(volume: &'a Volume, ray: &Ray, end: f64) -> Option<Self> {
         let local = volume.local_ray(ray);
         let range = volume.interval(&local, end)?;
-        let mu_t = volume.medium.mu_t;
+        let mu_t = volume.medium.mu_t_along(ray.direction);
         if mu_t <= 0.0 {
             return None;
         }

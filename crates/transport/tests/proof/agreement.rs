@@ -62,10 +62,15 @@ fn region_means(film: &Film) -> Vec<(String, f64)> {
 /// For each region and quantity its name and its values in all batches.
 pub type Batches = Vec<(String, Vec<f64>)>;
 
-/// A number of independent films.
-pub fn batches(scene: &Scene, options: RenderOptions, number: u64) -> Batches {
+/// The values in `count` batches.
+pub fn batches(scene: &Scene, integrator: Integrator, seed: u64, count: u64) -> Batches {
+    batches_with(scene, options(integrator, seed), count)
+}
+
+/// The same with any options.
+pub fn batches_with(scene: &Scene, options: RenderOptions, count: u64) -> Batches {
     let mut all: Batches = Vec::new();
-    for batch in 0..number {
+    for batch in 0..count {
         let film = render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES);
         let means = region_means(&film);
         if all.is_empty() {
@@ -79,15 +84,13 @@ pub fn batches(scene: &Scene, options: RenderOptions, number: u64) -> Batches {
 }
 
 /// Fails if any region of any quantity differs significantly.
-fn assert_same(name: &str, first: (&Scene, RenderOptions), second: (&Scene, RenderOptions)) {
-    let with_seed = |options, seed| RenderOptions { seed, ..options };
-    let a = batches(first.0, with_seed(first.1, 31), BATCHES);
-    let b = batches(second.0, with_seed(second.1, 32), BATCHES);
-    assert_same_batches(name, &a, &b);
+pub fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integrator)) {
+    let batches = [batches(first.0, first.1, 31, BATCHES), batches(second.0, second.1, 32, BATCHES)];
+    assert_same_batches(name, [first.1, second.1], &batches);
 }
 
-/// The same with films that are there already.
-pub fn assert_same_batches(name: &str, a: &Batches, b: &Batches) {
+/// Fails if any region of any quantity differs significantly between the batches of two integrators.
+pub fn assert_same_batches(name: &str, integrators: [Integrator; 2], [a, b]: &[Batches; 2]) {
     let limit = two_sided_quantile(1e-3 / a.len() as f64);
     let mut lit = 0;
     let mut worst: f64 = 0.0;
@@ -106,7 +109,9 @@ pub fn assert_same_batches(name: &str, a: &Batches, b: &Batches) {
         worst = worst.max(z.abs());
         assert!(
             z.abs() < limit,
-            "{name}: {quantity}: {mean_a} +- {error_a} and {mean_b} +- {error_b}, z = {z}"
+            "{name}: {quantity}: {:?} has {mean_a} +- {error_a}, {:?} {mean_b} +- {error_b}, z = {z}",
+            integrators[0],
+            integrators[1]
         );
     }
     eprintln!("{name}: {lit} of {} quantities are lit, greatest |z| {worst:.2} below {limit:.2}", a.len());
@@ -114,8 +119,7 @@ pub fn assert_same_batches(name: &str, a: &Batches, b: &Batches) {
 }
 
 fn assert_integrators_agree(name: &str, scene: &Scene) {
-    let by = |integrator| (scene, options(integrator, 0));
-    assert_same(name, by(Integrator::Reference), by(Integrator::Fast));
+    assert_same(name, (scene, Integrator::Reference), (scene, Integrator::Fast));
 }
 
 const DEPTHS: [Option<u32>; 3] = [Some(1), Some(2), None];
@@ -395,7 +399,6 @@ fn a_box_as_a_shape_and_as_a_grid_of_ones() {
     let mut as_grid = as_box.clone();
     as_grid.volumes[0].density = Density::Grid(Arc::new(grid));
     for integrator in [Integrator::Reference, Integrator::Fast] {
-        let as_box = (&as_box, options(Integrator::Reference, 0));
-        assert_same("box and grid", as_box, (&as_grid, options(integrator, 0)));
+        assert_same("box and grid", (&as_box, Integrator::Reference), (&as_grid, integrator));
     }
 }

@@ -4,10 +4,13 @@
 //! would fail by chance for other seeds is stated with each. Where both integrators can be asked, both are.
 
 mod agreement;
+mod chromatic;
 mod estimators;
 mod rendering;
 mod same_bits;
 mod scenes;
 mod slab;
+mod spectrum;
 mod statistics;
+mod walk;
 mod white_furnace;

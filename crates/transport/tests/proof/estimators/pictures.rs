@@ -5,7 +5,7 @@ use tyndall_scene::description::Integrator;
 use tyndall_transport::{DistanceSampler, Estimators, RenderOptions, TransmittanceEstimator};
 
 use super::effort;
-use crate::agreement::{HEAD, assert_same_batches, batches};
+use crate::agreement::{HEAD, assert_same_batches, batches_with};
 use crate::rendering::options;
 use crate::scenes::{scene_in, write_random_npy};
 
@@ -52,7 +52,7 @@ fn reference(distance: Option<&str>, transmittance: Option<&str>) -> RenderOptio
 fn unusual_pairs_make_the_picture_that_the_default_makes() {
     let scene = mixed();
     let number = 16 * effort();
-    let default = batches(&scene, reference(None, None), number);
+    let default = batches_with(&scene, reference(None, None), number);
     for (seed, distance, transmittance) in [
         (1, "regular-tracking", "unbiased-ray-marching"),
         (2, "forced-collision", "next-flight"),
@@ -61,8 +61,9 @@ fn unusual_pairs_make_the_picture_that_the_default_makes() {
     ] {
         let unusual = reference(Some(distance), Some(transmittance));
         unusual.estimators.validate(&scene).expect("a valid pair");
-        let pictures = batches(&scene, RenderOptions { seed, ..unusual }, number);
-        assert_same_batches(&format!("{distance} with {transmittance}"), &default, &pictures);
+        let pictures = batches_with(&scene, RenderOptions { seed, ..unusual }, number);
+        let name = format!("{distance} with {transmittance}");
+        assert_same_batches(&name, [Integrator::Reference; 2], &[default.clone(), pictures]);
     }
 }
 
