@@ -10,8 +10,17 @@ pub struct Chapter {
 pub enum Picture {
     /// `picture.png`: renders side by side.
     Panels { columns: usize, panels: &'static [Panel] },
-    /// `picture.svg`: what a command draws.
-    Plot { command: &'static str },
+    /// `picture.svg`: what `tyndall` draws when it is given this line.
+    Command { line: &'static str },
+    /// `picture.svg`: what a program of the gallery draws.
+    Chart(Chart),
+}
+
+/// Programs that draw charts, each in a file of that name.
+pub enum Chart {
+    Convergence,
+    Distances,
+    Transmittances,
 }
 
 /// One of several pictures side by side.
@@ -47,6 +56,10 @@ const fn layer(render: &'static str, shown: Shown, caption: &'static str) -> Pan
 
 const fn panels(folder: &'static str, columns: usize, panels: &'static [Panel]) -> Chapter {
     Chapter { folder, picture: Picture::Panels { columns, panels } }
+}
+
+const fn chart(folder: &'static str, chart: Chart) -> Chapter {
+    Chapter { folder, picture: Picture::Chart(chart) }
 }
 
 /// All chapters.
@@ -114,6 +127,10 @@ pub const CHAPTERS: &[Chapter] = &[
             panel("scene.toml", "thinning out with height"),
         ],
     ),
+    Chapter {
+        folder: "07_phase_functions",
+        picture: Picture::Command { line: "phase isotropic rayleigh hg:0.5 hg:0.85 fog(d=10um)" },
+    },
     panels(
         "08_smoke_and_steam",
         1,
@@ -149,6 +166,7 @@ pub const CHAPTERS: &[Chapter] = &[
             ),
         ],
     ),
+    chart("11_monte_carlo_integration", Chart::Convergence),
     panels(
         "12_volume_rendering_estimator",
         5,
@@ -165,4 +183,6 @@ pub const CHAPTERS: &[Chapter] = &[
             layer("scene.toml --spp 256", Shown::StandardError { times: 2.0 }, "an eighth"),
         ],
     ),
+    chart("13_distance_sampling", Chart::Distances),
+    chart("14_transmittance_estimation", Chart::Transmittances),
 ];

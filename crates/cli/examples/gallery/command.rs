@@ -12,8 +12,9 @@ impl Tyndall {
     pub fn build() -> Result<Tyndall, Box<dyn Error>> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+        // Together with this program, so that the libraries below both are built once.
         let status = Command::new(cargo)
-            .args(["build", "--quiet", "--bin", "tyndall", "--profile", profile])
+            .args(["build", "--quiet", "--bin", "tyndall", "--example", "gallery", "--profile", profile])
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .status()?;
         if !status.success() {

@@ -1,22 +1,31 @@
 //! Builds the pictures of `examples/`: `cargo run --release --example gallery [-- NN…]`.
 //!
-//! Every picture is made of what the command `tyndall` writes, so that each can be made by hand as well; here they are
-//! set side by side with captions. Seeds are fixed: the same bits every time. [`chapters`] is the list, in the order of
+//! Pictures of scenes are what the command `tyndall` writes, so that each can be made by hand as well; here they are
+//! set side by side with captions. The charts are short programs. Seeds are fixed: the same bits every time. [`chapters`] is the list, in the order of
 //! the subject; numbers after `--` choose some of it.
 
 mod chapters;
 mod command;
 mod compose;
+mod convergence;
+mod distances;
 mod font;
 mod layers;
+mod marks;
+#[path = "../../src/plot/mod.rs"]
+#[allow(dead_code, unused_imports, reason = "the command draws more kinds of charts")]
+mod plot;
+mod transmittances;
 
 use std::error::Error;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use chapters::{CHAPTERS, Chapter, Picture};
+use chapters::{CHAPTERS, Chapter, Chart, Picture};
 use command::Tyndall;
+use tyndall_film::write_atomically;
 
 fn main() -> ExitCode {
     let numbers: Vec<String> = std::env::args().skip(1).collect();
@@ -64,9 +73,18 @@ fn picture_of(chapter: &Chapter, tyndall: &Tyndall) -> Result<PathBuf, Box<dyn E
             compose::write(&file, *columns, &images)?;
             Ok(file)
         }
-        Picture::Plot { command } => {
+        Picture::Command { line } => {
+            tyndall.run(&folder, &format!("{line} -o picture.svg"))?;
+            Ok(folder.join("picture.svg"))
+        }
+        Picture::Chart(chart) => {
             let file = folder.join("picture.svg");
-            tyndall.run(&folder, &format!("{command} -o picture.svg"))?;
+            let svg = match chart {
+                Chart::Convergence => convergence::draw(&folder)?,
+                Chart::Distances => distances::draw(),
+                Chart::Transmittances => transmittances::draw(),
+            };
+            write_atomically(&file, |out| out.write_all(svg.as_bytes()))?;
             Ok(file)
         }
     }

@@ -16,15 +16,28 @@ impl Axes {
     pub fn new(frame: [f64; 4], x: [f64; 2], kind: Kind, values: impl Iterator<Item = f64>) -> Axes {
         let [left, top, right, bottom] = frame;
         let x = Scale::new(Kind::Linear, x, [left, right]);
-        Axes { x, y: Scale::around(kind, values, [bottom, top]), frame }
+        Axes::with_scales(frame, x, Scale::around(kind, values, [bottom, top]))
+    }
+
+    /// A frame with two scales that fit it.
+    pub fn with_scales(frame: [f64; 4], x: Scale, y: Scale) -> Axes {
+        Axes { x, y, frame }
+    }
+
+    /// The place of a point, if it has one.
+    pub fn at(&self, (x, y): (f64, f64)) -> Option<[f64; 2]> {
+        Some([self.x.at(x)?, self.y.at(y)?])
     }
 
     /// Draws the frame, with grid, ticks and names; `x_step` between the ticks of x, if they are not to be chosen.
     pub fn draw(&self, svg: &mut Svg, x_name: &str, x_step: Option<f64>, y_name: &str) {
         let [left, top, right, bottom] = self.frame;
         for tick in self.x.ticks(x_step) {
-            svg.line("grid", [tick.pixel, top], [tick.pixel, bottom]);
-            svg.line("tick", [tick.pixel, bottom], [tick.pixel, bottom + 4.0]);
+            let length = if tick.label.is_empty() { 2.0 } else { 4.0 };
+            if !tick.label.is_empty() {
+                svg.line("grid", [tick.pixel, top], [tick.pixel, bottom]);
+            }
+            svg.line("tick", [tick.pixel, bottom], [tick.pixel, bottom + length]);
             svg.text("small", Anchor::Middle, [tick.pixel, bottom + 17.0], &tick.label);
         }
         for tick in self.y.ticks(None) {
@@ -43,6 +56,6 @@ impl Axes {
 
     /// Draws a curve; points that have no place on the scales are left out.
     pub fn curve(&self, svg: &mut Svg, colour: &str, points: impl Iterator<Item = (f64, f64)>) {
-        svg.curve(colour, points.map(|(x, y)| Some([self.x.at(x)?, self.y.at(y)?])));
+        svg.curve(colour, points.map(|point| self.at(point)));
     }
 }

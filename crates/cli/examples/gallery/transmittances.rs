@@ -1,0 +1,69 @@
+//! Transmittance estimation: what every estimator pays, in lookups, for how much noise, on one ray.
+//!
+//! Two estimators that are equally efficient have the same product of variance and lookups: they lie on one of the
+//! slanting lines.
+
+use tyndall_transport::along_ray::Profile;
+use tyndall_transport::{AlongRay, Repeated, TransmittanceEstimator, repeat_transmittance};
+
+use crate::marks::cross;
+use crate::plot::{Anchor, Axes, COLOURS, Kind, Scale, Svg};
+
+const SAMPLES: u64 = 40_000;
+
+/// Draws the picture of the chapter.
+pub fn draw() -> String {
+    let mut svg = Svg::new(960.0, 430.0);
+    svg.text("title", Anchor::Start, [70.0, 28.0], "One estimate of T: its noise and its cost");
+    let frame = [70.0, 44.0, 560.0, 370.0];
+    let x = Scale::new(Kind::Log, [1.0, 1000.0], [frame[0], frame[2]]);
+    let axes = Axes::with_scales(frame, x, Scale::new(Kind::Log, [0.01, 10.0], [frame[3], frame[1]]));
+    axes.draw(&mut svg, "lookups", None, "standard deviation / T");
+    for constant in [0.1, 1.0, 10.0] {
+        let ends = [1.0, 1000.0_f64].map(|lookups| {
+            (
+                lookups.max((constant / 10.0_f64).powi(2)),
+                constant / lookups.max((constant / 10.0_f64).powi(2)).sqrt(),
+            )
+        });
+        axes.curve(&mut svg, "#ccc", ends.into_iter());
+    }
+    svg.text("small", Anchor::Start, [600.0, 58.0], "on a ray of two clouds, τ = 2.9, T = 0.055");
+    let ray = AlongRay::with_profile(profile(), 4.0, 8);
+    let mut line = 84.0;
+    for (number, estimator) in (1..).zip(TransmittanceEstimator::ALL) {
+        let text = match estimator.check(&ray) {
+            Ok(()) => {
+                let result = repeat_transmittance(estimator, &ray, SAMPLES, 14);
+                mark(&mut svg, &axes, number, &result);
+                describe(estimator, &result)
+            }
+            Err(reason) => format!("{}: {reason}", estimator.name()),
+        };
+        svg.text("", Anchor::Start, [600.0, line], &format!("{number:2}  {text}"));
+        line += 21.0;
+    }
+    svg.finish()
+}
+
+/// Two clouds behind each other, and thin haze between.
+fn profile() -> Profile {
+    Profile::Sine { mean: 0.725, frequency: 0.5 }
+}
+
+fn mark(svg: &mut Svg, axes: &Axes, number: u32, result: &Repeated) {
+    let point = (result.lookups, result.variance.sqrt() / result.mean);
+    cross(svg, axes, COLOURS[0], point);
+    if let Some([x, y]) = axes.at(point) {
+        svg.text("", Anchor::Start, [x + 6.0, y - 4.0], &number.to_string());
+    }
+}
+
+fn describe(estimator: TransmittanceEstimator, result: &Repeated) -> String {
+    let name = estimator.name();
+    let bias = if estimator.properties().unbiased { "" } else { ", biased" };
+    if result.variance.sqrt() < 1e-9 * result.mean {
+        return format!("{name}: exact{bias}");
+    }
+    format!("{name}{bias}")
+}
