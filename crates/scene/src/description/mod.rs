@@ -10,6 +10,8 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod meter;
+mod meter_rules;
 mod phase;
 pub mod phase_spec;
 mod rgb;
@@ -25,6 +27,10 @@ pub use lights::{
     PointLightDescription, SkyDescription, SunLightDescription,
 };
 pub use medium::{Coefficients, MediumDescription};
+pub use meter::{
+    BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
+    RadianceMeterDescription,
+};
 pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
@@ -62,6 +68,9 @@ pub struct SceneDescription {
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,
+    /// What `tyndall measure` measures.
+    #[serde(default, rename = "meter", skip_serializing_if = "Vec::is_empty")]
+    pub meters: Vec<MeterDescription>,
 }
 
 fn default_unit() -> String {

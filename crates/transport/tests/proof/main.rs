@@ -12,4 +12,5 @@ mod scenes;
 mod slab;
 mod spectrum;
 mod statistics;
+mod walk;
 mod white_furnace;
