@@ -10,9 +10,10 @@ use std::sync::Arc;
 use tyndall_film::Film;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Density, Scene};
+use tyndall_transport::RenderOptions;
 use tyndall_volumes::{BrickGrid, LEAF_VOXELS, Leaf, Storage, Tree};
 
-use crate::rendering::render;
+use crate::rendering::{options, render_with};
 use crate::scenes::{scene, scene_in, write_npy, write_random_npy};
 use crate::statistics::{mean_and_error, normal_from_student, two_sided_quantile};
 
@@ -63,9 +64,14 @@ pub type Batches = Vec<(String, Vec<f64>)>;
 
 /// The values in `count` batches.
 pub fn batches(scene: &Scene, integrator: Integrator, seed: u64, count: u64) -> Batches {
+    batches_with(scene, options(integrator, seed), count)
+}
+
+/// The same with any options.
+pub fn batches_with(scene: &Scene, options: RenderOptions, count: u64) -> Batches {
     let mut all: Batches = Vec::new();
     for batch in 0..count {
-        let film = render(scene, integrator, seed, batch * SAMPLES..(batch + 1) * SAMPLES);
+        let film = render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES);
         let means = region_means(&film);
         if all.is_empty() {
             all = means.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
