@@ -1,6 +1,7 @@
 //! `tyndall slab`: what a plane-parallel layer reflects, transmits and absorbs.
 
 use std::fmt::Write as _;
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -8,13 +9,15 @@ use glam::DVec3;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 use tyndall_optics::PhaseFunction;
+use tyndall_scene::description::phase_spec;
+use tyndall_scene::{build_phase, grey_phase};
 use tyndall_transport::walk::{Incidence, LayerFluxes, Slab};
 
 use crate::Done;
 use crate::effort::Effort;
 use crate::interrupt::cancel_on_interrupt;
 use crate::measured::{Value, with_error};
-use crate::terminal::answer;
+use crate::terminal::{answer, tell};
 
 /// Reflectance, transmittance and absorptance of a plane-parallel layer, with their standard errors
 ///
@@ -37,7 +40,7 @@ pub struct Args {
     /// Mean cosine of the Henyey-Greenstein phase function; above 0 is forward
     #[arg(long, value_name = "G", default_value = "0", allow_negative_numbers = true, value_parser = parse_g)]
     g: f64,
-    /// Phase function in its place, such as rayleigh or hg(g=0.85)
+    /// Phase function in its place, such as rayleigh or draine(g=0.6,alpha=0.5); see `tyndall phase`
     #[arg(long, value_name = "SPEC", conflicts_with = "g")]
     phase: Option<String>,
     /// Where the light comes from: along the normal, DEG degrees off it, or evenly from the whole hemisphere
@@ -73,7 +76,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return Err(miette!("--radiance: is not known behind reflecting faces; leave --n away"));
     }
     let phase_function = match &args.phase {
-        Some(spec) => parse_phase(spec)?,
+        Some(spec) => phase_function(spec)?,
         None => PhaseFunction::HenyeyGreenstein { g: args.g },
     };
     let slab = Slab {
@@ -186,12 +189,12 @@ fn table(args: &Args, fluxes: &LayerFluxes, seconds: f64) -> String {
     text
 }
 
-/// Until the phase functions have their own language.
-fn parse_phase(spec: &str) -> miette::Result<PhaseFunction> {
-    match spec {
-        "isotropic" => Ok(PhaseFunction::Isotropic),
-        _ => Err(miette!("--phase {spec}: there is `isotropic`")),
-    }
+/// The phase function of the text, at 550 nm if it depends on the wavelength.
+fn phase_function(spec: &str) -> miette::Result<PhaseFunction> {
+    let description = phase_spec::parse(spec)?;
+    let (phase_function, note) = grey_phase(&build_phase(&description, Path::new(""))?);
+    note.into_iter().for_each(|note| tell(format!("note: {note}")));
+    Ok(phase_function)
 }
 
 fn parse_tau(text: &str) -> Result<f64, String> {
