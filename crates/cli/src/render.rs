@@ -184,6 +184,7 @@ fn open_picture(
         ),
         seed: u64::from(description.render.seed),
         seconds: 0.0,
+        colours: Default::default(),
     };
     let empty = Accumulation { film, metadata };
     let Some(checkpoint) = args.checkpoint.as_deref().filter(|path| path.exists()) else { return Ok(empty) };
