@@ -10,10 +10,14 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod mie_spec;
+mod particles;
 mod phase;
 pub mod phase_spec;
+mod quantity;
 mod rgb;
 mod rules;
+mod spheres;
 mod transform;
 mod volume;
 
@@ -25,9 +29,12 @@ pub use lights::{
     PointLightDescription, SkyDescription, SunLightDescription,
 };
 pub use medium::{Coefficients, MediumDescription};
+pub use particles::ParticlesDescription;
 pub use phase::{PhaseDescription, SggxShape};
+pub use quantity::Quantity;
 pub use rgb::Rgb;
 pub use rules::Violation;
+pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};
 pub use volume::{
     AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,
