@@ -10,6 +10,8 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod meter;
+mod meter_rules;
 mod mie_spec;
 mod particles;
 mod phase;
@@ -29,6 +31,10 @@ pub use lights::{
     PointLightDescription, SkyDescription, SunLightDescription,
 };
 pub use medium::{Coefficients, MediumDescription};
+pub use meter::{
+    BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
+    RadianceMeterDescription,
+};
 pub use particles::ParticlesDescription;
 pub use phase::{PhaseDescription, SggxShape};
 pub use quantity::Quantity;
@@ -69,6 +75,9 @@ pub struct SceneDescription {
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,
+    /// What `tyndall measure` measures.
+    #[serde(default, rename = "meter", skip_serializing_if = "Vec::is_empty")]
+    pub meters: Vec<MeterDescription>,
 }
 
 fn default_unit() -> String {

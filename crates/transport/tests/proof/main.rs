@@ -10,5 +10,7 @@ mod rendering;
 mod same_bits;
 mod scenes;
 mod slab;
+mod spectrum;
 mod statistics;
+mod walk;
 mod white_furnace;
