@@ -14,6 +14,7 @@ use crate::Done;
 use crate::effort::Effort;
 use crate::interrupt::cancel_on_interrupt;
 use crate::measured::{Value, with_error};
+use crate::phase;
 use crate::terminal::answer;
 
 /// Reflectance, transmittance and absorptance of a plane-parallel layer, with their standard errors
@@ -73,7 +74,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return Err(miette!("--radiance: is not known behind reflecting faces; leave --n away"));
     }
     let phase_function = match &args.phase {
-        Some(spec) => parse_phase(spec)?,
+        Some(spec) => phase::read(spec)?,
         None => PhaseFunction::HenyeyGreenstein { g: args.g },
     };
     let slab = Slab {
@@ -184,14 +185,6 @@ fn table(args: &Args, fluxes: &LayerFluxes, seconds: f64) -> String {
         fluxes.samples
     );
     text
-}
-
-/// Until the phase functions have their own language.
-fn parse_phase(spec: &str) -> miette::Result<PhaseFunction> {
-    match spec {
-        "isotropic" => Ok(PhaseFunction::Isotropic),
-        _ => Err(miette!("--phase {spec}: there is `isotropic`")),
-    }
 }
 
 fn parse_tau(text: &str) -> Result<f64, String> {
