@@ -1,5 +1,6 @@
 //! `tyndall render`: a scene or a volume becomes a picture with its error.
 
+mod estimators;
 pub mod input;
 mod progress;
 pub mod stop;
@@ -19,6 +20,7 @@ use crate::Done;
 use crate::output::{Output, check_writable, parse_exposure, write_all};
 use crate::terminal::{answer, tell};
 use crate::volume_input::RawArgs;
+use estimators::EstimatorArgs;
 use progress::{Progress, ProgressStyle};
 use stop::{Goal, Plan};
 
@@ -64,6 +66,8 @@ pub struct Args {
     /// Which integrator: one path at a time to read beside the equations, or many at once
     #[arg(long, value_name = "reference|fast", value_parser = parse_integrator)]
     integrator: Option<Integrator>,
+    #[command(flatten)]
+    estimators: EstimatorArgs,
     /// Save the exact sums here every minute and at the end, for --resume
     #[arg(long, value_name = "FILE.acc")]
     checkpoint: Option<PathBuf>,
@@ -94,6 +98,7 @@ impl Args {
             exposure: None,
             set: Vec::new(),
             integrator: None,
+            estimators: EstimatorArgs::default(),
             checkpoint: None,
             resume: false,
             progress: ProgressStyle::default(),
@@ -117,13 +122,18 @@ pub fn run(args: Args) -> miette::Result<Done> {
     // First of all, as it may be too large for this machine.
     let film = Film::new(width, height, layers(description)).into_diagnostic()?;
     let built = build(description, &input.folder)?;
-    for note in input.notes.iter().chain(&built.notes) {
+    let estimators =
+        args.estimators.choose(description.render.integrator, args.input.as_deref(), &built.scene)?;
+    for note in input.notes.iter().chain(&built.notes).chain(&estimators.notes()) {
         tell(format!("note: {note}"));
+    }
+    if args.integrator.is_none() && args.estimators.integrator().is_some() {
+        tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
     }
     if built.scene.is_chromatic() {
         tell("note: some extinction or phase function depends on colour: the spectral integrator renders");
     }
-    let mut picture = open_picture(&args, description, &input.folder, film)?;
+    let mut picture = open_picture(&args, description, &input.folder, estimators, film)?;
     let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
     let end = render(&args, &built.scene, description, &plan, &mut picture)?;
 
@@ -144,7 +154,8 @@ fn overrides(args: &Args) -> Vec<String> {
     let mut overrides = args.set.clone();
     overrides.extend(args.resolution.map(|[width, height]| format!("film.resolution=[{width}, {height}]")));
     overrides.extend(args.seed.map(|seed| format!("render.seed={seed}")));
-    overrides.extend(args.integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
+    let integrator = args.integrator.or(args.estimators.integrator());
+    overrides.extend(integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
     overrides
 }
 
@@ -160,14 +171,20 @@ fn open_picture(
     args: &Args,
     description: &SceneDescription,
     folder: &Path,
+    estimators: Estimators,
     film: Film,
 ) -> miette::Result<Accumulation> {
     let metadata = ImageMetadata {
         scene_hash: scene_hash(description, folder)?.to_string(),
         version: env!("CARGO_PKG_VERSION").to_string(),
-        options: format!("integrator={}", name(description.render.integrator)),
+        options: format!(
+            "integrator={}{}",
+            name(description.render.integrator),
+            estimators::as_options(estimators)
+        ),
         seed: u64::from(description.render.seed),
         seconds: 0.0,
+        colours: Default::default(),
     };
     let empty = Accumulation { film, metadata };
     let Some(checkpoint) = args.checkpoint.as_deref().filter(|path| path.exists()) else { return Ok(empty) };
@@ -184,7 +201,7 @@ fn open_picture(
     let shape = |film: &Film| (film.width(), film.height(), film.layers());
     if !same(&saved.metadata, &empty.metadata) || shape(&saved.film) != shape(&empty.film) {
         return Err(miette!(
-            "{}: is of another scene, size, seed, integrator, layers or version; name another --checkpoint",
+            "{}: is of another scene, size, seed, integrator, estimators, layers or version; name another --checkpoint",
             checkpoint.display()
         ));
     }
@@ -217,7 +234,7 @@ fn render(
         integrator: description.render.integrator,
         seed: picture.metadata.seed,
         threads: args.threads.map_or(cores, usize::from),
-        estimators: Estimators::default(),
+        estimators: args.estimators.chosen(),
     };
     let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
     let mut clock = stop::Clock::start(picture.metadata.seconds);

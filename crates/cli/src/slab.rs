@@ -1,7 +1,6 @@
 //! `tyndall slab`: what a plane-parallel layer reflects, transmits and absorbs.
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -9,15 +8,14 @@ use glam::DVec3;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 use tyndall_optics::PhaseFunction;
-use tyndall_scene::description::phase_spec;
-use tyndall_scene::{build_phase, grey_phase};
 use tyndall_transport::walk::{Incidence, LayerFluxes, Slab};
 
 use crate::Done;
 use crate::effort::Effort;
 use crate::interrupt::cancel_on_interrupt;
 use crate::measured::{Value, with_error};
-use crate::terminal::{answer, tell};
+use crate::phase;
+use crate::terminal::answer;
 
 /// Reflectance, transmittance and absorptance of a plane-parallel layer, with their standard errors
 ///
@@ -76,7 +74,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return Err(miette!("--radiance: is not known behind reflecting faces; leave --n away"));
     }
     let phase_function = match &args.phase {
-        Some(spec) => phase_function(spec)?,
+        Some(spec) => phase::read(spec)?,
         None => PhaseFunction::HenyeyGreenstein { g: args.g },
     };
     let slab = Slab {
@@ -187,14 +185,6 @@ fn table(args: &Args, fluxes: &LayerFluxes, seconds: f64) -> String {
         fluxes.samples
     );
     text
-}
-
-/// The phase function of the text, at 550 nm if it depends on the wavelength.
-fn phase_function(spec: &str) -> miette::Result<PhaseFunction> {
-    let description = phase_spec::parse(spec)?;
-    let (phase_function, note) = grey_phase(&build_phase(&description, Path::new(""))?);
-    note.into_iter().for_each(|note| tell(format!("note: {note}")));
-    Ok(phase_function)
 }
 
 fn parse_tau(text: &str) -> Result<f64, String> {

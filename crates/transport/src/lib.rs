@@ -27,5 +27,5 @@ pub use properties::{MajorantUse, Need, Properties, Reason};
 pub use reference::{trace, trace_with};
 pub use render::{Control, Outcome, RenderOptions, render_pass};
 pub use repeat::{Repeated, repeat_distance, repeat_transmittance};
-pub use spectral::SpectralScene;
+pub use spectral::{SpectralIntegrator, SpectralScene};
 pub use transmittance::{TransmittanceEstimator, estimate_transmittance};

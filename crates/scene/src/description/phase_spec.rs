@@ -1,6 +1,6 @@
 //! Phase functions in one line: `rayleigh`, `hg(g=0.85)`, `hg:0.85`, `fog(d=10um)`, `sggx(kind=fibre, roughness=0.3)`.
 //!
-//! The text is a [`call`](super::call) whose name is the `type` of a [`PhaseDescription`] and whose values are its keys;
+//! The text is a call whose name is the `type` of a [`PhaseDescription`] and whose values are its keys;
 //! calls within it are tables that are told apart by their `type`. It is made the tree that a scene file would give and
 //! held against the same schema, so that names, ranges and messages are those of scene files. Two things are shorter
 //! here. A key may leave its unit to the value: `wavelength=0.55um` is `wavelength_nm=550`. And the only key that a type
