@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use miette::{IntoDiagnostic, miette};
 use serde_json::json;
+use tyndall_optics::PhaseFunction;
 use tyndall_scene::description::phase_spec;
 use tyndall_scene::{build_phase, grey_phase};
 
@@ -66,7 +67,8 @@ enum Radius {
 /// Computes, draws, prints.
 pub fn run(args: Args) -> miette::Result<()> {
     check_writable(args.output.as_deref())?;
-    let curves = args.specs.iter().map(|spec| curve(spec, &args)).collect::<miette::Result<Vec<_>>>()?;
+    let curve = |spec: &String| Ok(Curve::new(spec.trim().to_owned(), read(spec)?, args.incidence));
+    let curves = args.specs.iter().map(curve).collect::<miette::Result<Vec<_>>>()?;
     if args.incidence.is_some() && curves.iter().all(|curve| curve.projected_area().is_none()) {
         return Err(miette!(
             "--incidence: none of the phase functions depends on it; leave it out, or give an sggx"
@@ -88,13 +90,14 @@ pub fn run(args: Args) -> miette::Result<()> {
     answer(table(&curves, &args.angles.0))
 }
 
-fn curve(spec: &str, args: &Args) -> miette::Result<Curve> {
+/// The phase function of a one-line description; files it names are relative to the working folder.
+pub fn read(spec: &str) -> miette::Result<PhaseFunction> {
     let description = phase_spec::parse(spec)?;
     let (phase, note) = grey_phase(&build_phase(&description, Path::new(""))?);
     if let Some(note) = note {
         tell(format!("note: {spec}: {note}"));
     }
-    Ok(Curve::new(spec.trim().to_owned(), phase, args.incidence))
+    Ok(phase)
 }
 
 fn object(curve: &Curve, angles: &[f64]) -> serde_json::Value {

@@ -143,3 +143,17 @@ fn wrong_input_is_told_in_one_line() {
         assert_eq!(folder.run(line).code, Some(2), "{line}");
     }
 }
+
+#[test]
+fn slabs_take_any_phase_function() {
+    let folder = Folder::new();
+    let slab = |options: &str| {
+        let answer = json(&folder, &format!("slab --tau 1 --albedo 0.9 --samples 2000 --json {options}"));
+        answer["reflectance"]["mean"].as_f64().unwrap()
+    };
+    assert_eq!(slab("--phase hg:0.75"), slab("--g 0.75"));
+    assert_eq!(slab("--phase isotropic"), slab("--g 0"));
+    assert!(slab("--phase fog(d=10um)") < slab("--phase rayleigh"));
+    let run = folder.run("slab --tau 1 --albedo 1 --phase hgg:0.75");
+    assert!(run.code == Some(1) && run.error().contains("did you mean `hg`?"), "{}", run.err);
+}

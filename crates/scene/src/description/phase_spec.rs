@@ -11,8 +11,8 @@ use std::sync::Arc;
 use miette::NamedSource;
 use serde_json::Value as Schema;
 
-use super::PhaseDescription;
 use super::call::{self, Argument, Call, Term};
+use super::{PhaseDescription, mie_spec};
 use crate::SceneError;
 use crate::toml::conformance;
 use crate::toml::schema::schema_of;
@@ -44,7 +44,7 @@ pub fn parse(text: &str) -> Result<PhaseDescription, SceneError> {
     if text.len() > GREATEST_LENGTH {
         return Err(place.problem("is too long for a phase function in one line").into());
     }
-    let call = call::parse(text).map_err(|message| place.problem(message))?;
+    let call = call::parse(text).map(mie_spec::named).map_err(|message| place.problem(message))?;
     let schema = schema_of::<PhaseDescription>();
     let node = Tree { place: &place }.table(&call, &schema)?;
     SceneError::unless_empty(conformance::problems(&node, "the phase function", &schema))?;
