@@ -36,7 +36,7 @@ pub fn draw(folder: &Path) -> Result<String, Box<dyn Error>> {
     let mut svg = Svg::new(960.0, 400.0);
     svg.text("title", Anchor::Start, [70.0, 28.0], "The mean of n samples, with one standard error");
     let frame = [70.0, 44.0, 450.0, 340.0];
-    let axes = axes(frame, Scale::new(Kind::Linear, [0.5, 1.1], [frame[3], frame[1]]));
+    let axes = axes(frame, Scale::new(Kind::Linear, [0.2, 1.2], [frame[3], frame[1]]));
     axes.draw(&mut svg, "samples n", None, "radiance");
     axes.curve(&mut svg, COLOURS[6], [1.0, samples(STEPS)].map(|n| (n, truth)).into_iter());
     for (colour, run) in COLOURS.iter().zip(&runs[..4]) {
@@ -46,7 +46,7 @@ pub fn draw(folder: &Path) -> Result<String, Box<dyn Error>> {
             error_bar(&mut svg, &axes, colour, (samples(step) * beside, *mean), *error);
         }
     }
-    legend(&mut svg, [310.0, 262.0], ["one run", "another", "a third", "a fourth"].into_iter());
+    legend(&mut svg, [320.0, 256.0], ["one run", "another", "a third", "a fourth"].into_iter());
 
     svg.text("title", Anchor::Start, [560.0, 28.0], "Its error, root mean square of 64 runs");
     let frame = [560.0, 44.0, 930.0, 340.0];
@@ -66,10 +66,10 @@ pub fn draw(folder: &Path) -> Result<String, Box<dyn Error>> {
     }
     legend(
         &mut svg,
-        [600.0, 290.0],
-        ["x: of the mean", "x: standard error that the samples tell"].into_iter(),
+        [590.0, 290.0],
+        ["error of the mean", "standard error, as the samples tell it"].into_iter(),
     );
-    svg.text("", Anchor::Start, [760.0, 120.0], "σ/√n");
+    svg.text("", Anchor::Start, [730.0, 128.0], "σ/√n");
     Ok(svg.finish())
 }
 

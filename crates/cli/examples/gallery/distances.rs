@@ -10,7 +10,8 @@ use tyndall_transport::{AlongRay, DistanceSampler, Lookups, repeat_distance};
 use crate::marks::error_bar;
 use crate::plot::{Anchor, Axes, COLOURS, Kind, Scale, Svg, legend};
 
-const LENGTH: f64 = 4.0;
+/// Length of the ray.
+pub const LENGTH: f64 = 4.0;
 const BINS: usize = 32;
 const FLIGHTS: u64 = 20_000;
 const SAMPLERS: [DistanceSampler; 3] = [
@@ -20,7 +21,7 @@ const SAMPLERS: [DistanceSampler; 3] = [
 ];
 
 /// Two clouds behind each other, and thin haze between.
-fn profile() -> Profile {
+pub fn profile() -> Profile {
     Profile::PiecewiseLinear(vec![
         (0.0, 0.1),
         (0.5, 0.1),
@@ -60,13 +61,9 @@ pub fn draw() -> String {
             error_bar(&mut svg, &axes, colour, (t, density), error);
         }
     }
-    for (label, colour, place) in [
-        ("μt", COLOURS[4], (2.62, 1.75)),
-        ("T", COLOURS[5], (0.1, 1.06)),
-        ("p = μt T", COLOURS[6], (0.98, 0.98)),
-    ] {
+    for (label, place) in [("μt", (2.42, 1.75)), ("T", (0.1, 1.04)), ("p = μt T", (1.42, 0.62))] {
         if let Some(place) = axes.at(place) {
-            svg.text(&format!("\" style=\"fill:{colour}"), Anchor::Start, place, label);
+            svg.text("", Anchor::Start, place, label);
         }
     }
     draw_cost(&mut svg);

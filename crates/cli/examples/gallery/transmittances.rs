@@ -3,13 +3,15 @@
 //! Two estimators that are equally efficient have the same product of variance and lookups: they lie on one of the
 //! slanting lines.
 
-use tyndall_transport::along_ray::Profile;
-use tyndall_transport::{AlongRay, Repeated, TransmittanceEstimator, repeat_transmittance};
+use tyndall_transport::{AlongRay, Lookups, Repeated, TransmittanceEstimator, repeat_transmittance};
 
+use crate::distances::{LENGTH, profile};
 use crate::marks::cross;
 use crate::plot::{Anchor, Axes, COLOURS, Kind, Scale, Svg};
 
 const SAMPLES: u64 = 40_000;
+/// The lower end of the scale of noise.
+const LEAST: f64 = 0.001;
 
 /// Draws the picture of the chapter.
 pub fn draw() -> String {
@@ -17,19 +19,17 @@ pub fn draw() -> String {
     svg.text("title", Anchor::Start, [70.0, 28.0], "One estimate of T: its noise and its cost");
     let frame = [70.0, 44.0, 560.0, 370.0];
     let x = Scale::new(Kind::Log, [1.0, 1000.0], [frame[0], frame[2]]);
-    let axes = Axes::with_scales(frame, x, Scale::new(Kind::Log, [0.01, 10.0], [frame[3], frame[1]]));
+    let axes = Axes::with_scales(frame, x, Scale::new(Kind::Log, [LEAST, 100.0], [frame[3], frame[1]]));
     axes.draw(&mut svg, "lookups", None, "standard deviation / T");
-    for constant in [0.1, 1.0, 10.0] {
-        let ends = [1.0, 1000.0_f64].map(|lookups| {
-            (
-                lookups.max((constant / 10.0_f64).powi(2)),
-                constant / lookups.max((constant / 10.0_f64).powi(2)).sqrt(),
-            )
-        });
-        axes.curve(&mut svg, "#ccc", ends.into_iter());
+    for efficiency in [0.03, 0.3, 3.0, 30.0] {
+        // From where the line is at the top, or at one lookup, to where it is at the bottom.
+        let ends = [1.0, 1000.0_f64.min((efficiency / LEAST).powi(2))];
+        axes.curve(&mut svg, "#ccc", ends.map(|lookups| (lookups, efficiency / lookups.sqrt())).into_iter());
     }
-    svg.text("small", Anchor::Start, [600.0, 58.0], "on a ray of two clouds, τ = 2.9, T = 0.055");
-    let ray = AlongRay::with_profile(profile(), 4.0, 8);
+    let ray = AlongRay::with_profile(profile(), LENGTH, 8);
+    let tau = ray.thickness(LENGTH, &mut Lookups::default());
+    let title = format!("through two clouds, τ = {tau:.2}, T = {:.4}", (-tau).exp());
+    svg.text("small", Anchor::Start, [600.0, 58.0], &title);
     let mut line = 84.0;
     for (number, estimator) in (1..).zip(TransmittanceEstimator::ALL) {
         let text = match estimator.check(&ray) {
@@ -46,11 +46,6 @@ pub fn draw() -> String {
     svg.finish()
 }
 
-/// Two clouds behind each other, and thin haze between.
-fn profile() -> Profile {
-    Profile::Sine { mean: 0.725, frequency: 0.5 }
-}
-
 fn mark(svg: &mut Svg, axes: &Axes, number: u32, result: &Repeated) {
     let point = (result.lookups, result.variance.sqrt() / result.mean);
     cross(svg, axes, COLOURS[0], point);
@@ -61,9 +56,7 @@ fn mark(svg: &mut Svg, axes: &Axes, number: u32, result: &Repeated) {
 
 fn describe(estimator: TransmittanceEstimator, result: &Repeated) -> String {
     let name = estimator.name();
-    let bias = if estimator.properties().unbiased { "" } else { ", biased" };
-    if result.variance.sqrt() < 1e-9 * result.mean {
-        return format!("{name}: exact{bias}");
-    }
-    format!("{name}{bias}")
+    let noise = if result.variance.sqrt() < 1e-9 * result.mean { ": no noise" } else { "" };
+    let bias = if estimator.properties().unbiased { "" } else { ", but biased" };
+    format!("{name}{noise}{bias}")
 }
