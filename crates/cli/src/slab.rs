@@ -38,7 +38,7 @@ pub struct Args {
     /// Mean cosine of the Henyey-Greenstein phase function; above 0 is forward
     #[arg(long, value_name = "G", default_value = "0", allow_negative_numbers = true, value_parser = parse_g)]
     g: f64,
-    /// Phase function in its place, such as rayleigh or hg(g=0.85)
+    /// Phase function in its place, such as rayleigh or draine(g=0.6,alpha=0.5); see `tyndall phase`
     #[arg(long, value_name = "SPEC", conflicts_with = "g")]
     phase: Option<String>,
     /// Where the light comes from: along the normal, DEG degrees off it, or evenly from the whole hemisphere
