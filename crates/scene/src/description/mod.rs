@@ -12,10 +12,14 @@ mod lights;
 mod medium;
 mod meter;
 mod meter_rules;
+mod mie_spec;
+mod particles;
 mod phase;
 pub mod phase_spec;
+mod quantity;
 mod rgb;
 mod rules;
+mod spheres;
 mod transform;
 mod volume;
 
@@ -31,9 +35,12 @@ pub use meter::{
     BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
     RadianceMeterDescription,
 };
+pub use particles::ParticlesDescription;
 pub use phase::{PhaseDescription, SggxShape};
+pub use quantity::Quantity;
 pub use rgb::Rgb;
 pub use rules::Violation;
+pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};
 pub use volume::{
     AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,

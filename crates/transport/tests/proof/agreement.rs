@@ -145,6 +145,44 @@ fn a_cloud_under_sun_and_sky() {
     }
 }
 
+/// Oriented particles have another extinction along each ray, in a grid and in a shape; the fog's peak is sharp.
+#[test]
+fn oriented_particles_beside_fog() {
+    let folder = tempfile::tempdir().expect("a folder for test files");
+    write_random_npy(&folder.path().join("random.npy"), [16, 16, 16], 23);
+    let scene = scene_in(
+        folder.path(),
+        &format!(
+            r#"{HEAD}
+            [[volume]]
+            file = "random.npy"
+            mu_t = 6
+            albedo = [1, 0.9, 0.8]
+            phase = {{ type = "sggx", kind = "fibre", roughness = 0.2, axis = [1, 0.5, 0.2] }}
+            transform = {{ scale = 0.09, translate = [-1.1, -0.7, -0.7] }}
+            [[volume]]
+            sphere = {{ center = [0.5, 0, 0], radius = 0.8 }}
+            mu_t = 2
+            albedo = 0.95
+            phase = {{ type = "sggx", kind = "surface", roughness = 0.3, axis = [0, 1, 0] }}
+            [[volume]]
+            sphere = {{ center = [0, -0.5, 0.2], radius = 0.7 }}
+            mu_t = 1
+            albedo = 1
+            phase = {{ type = "fog", droplet_diameter_um = 12 }}
+            [[light]]
+            type = "distant"
+            direction = [-0.4, -1, -0.5]
+            irradiance = 2
+            [[light]]
+            type = "constant"
+            radiance = 0.3
+            "#
+        ),
+    );
+    assert_integrators_agree("oriented particles beside fog", &scene);
+}
+
 #[test]
 fn voxels_without_a_filter_in_an_atmosphere() {
     let folder = tempfile::tempdir().expect("a folder for test files");

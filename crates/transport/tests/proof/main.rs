@@ -6,6 +6,7 @@
 mod agreement;
 mod chromatic;
 mod estimators;
+mod phase_functions;
 mod rendering;
 mod same_bits;
 mod scenes;
