@@ -6,9 +6,12 @@ mod effort;
 mod estimators;
 mod inspect;
 mod interrupt;
+mod measure;
 mod measured;
 mod merge;
 mod output;
+mod phase;
+mod plot;
 mod render;
 mod slab;
 mod terminal;
@@ -44,6 +47,8 @@ enum Command {
     Diff(diff::Args),
     Estimators(Box<estimators::Args>),
     Slab(Box<slab::Args>),
+    Measure(measure::Args),
+    Phase(phase::Args),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -77,11 +82,13 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
         None => return render::run(render::Args::default_scene()),
         Some(Command::Render(args)) => return render::run(*args),
         Some(Command::Slab(args)) => return slab::run(*args),
+        Some(Command::Measure(args)) => return measure::run(args),
         Some(Command::Inspect(args)) => inspect::run(args)?,
         Some(Command::Convert(args)) => convert::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,
         Some(Command::Diff(args)) => diff::run(args)?,
         Some(Command::Estimators(args)) => estimators::run(*args)?,
+        Some(Command::Phase(args)) => phase::run(args)?,
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "tyndall", &mut script);

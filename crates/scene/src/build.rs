@@ -16,7 +16,7 @@ use crate::description::{
 use crate::light::build_lights;
 use crate::phase::{build_phase, grey_phase};
 use crate::ready::light_probabilities;
-use crate::{Camera, Density, Medium, Scene, SceneDescription, SceneError, Volume, procedural};
+use crate::{Camera, Density, Medium, Observer, Scene, SceneDescription, SceneError, Volume, procedural};
 
 /// A scene, and what the user should know of how it came about.
 #[derive(Debug, Clone)]
@@ -63,6 +63,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
         lights: lights.lights,
         light_probabilities,
         max_depth: description.render.max_depth,
+        observer: Observer::Rgb,
     };
     Ok(BuiltScene { scene, grids, notes })
 }

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use glam::{DVec3, DVec4};
 use tyndall_optics::{PhaseFunction, Spectrum, uplift};
 
-use crate::Medium;
+use crate::{Medium, SceneDescription};
 
 /// What the channels of a path are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +38,27 @@ impl Channels {
     }
 }
 
+/// What the three channels of a picture are.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Observer {
+    /// Linear red, green and blue (Rec. 709), and light is taken to be made of these three.
+    #[default]
+    Rgb,
+    /// Linear red, green and blue of light of all wavelengths, as the CIE 1931 standard observer sees it.
+    SpectralRgb,
+    /// The same light as CIE XYZ.
+    SpectralXyz,
+    /// Radiance at three wavelengths, nm.
+    Bands([f64; 3]),
+}
+
+/// The observers whose films make the picture of a scene: at least one, and one for each three bands. Where bands do not
+/// fill the last three, the last of them is repeated.
+pub fn observers(description: &SceneDescription) -> Vec<Observer> {
+    let _ = description;
+    vec![Observer::Rgb]
+}
+
 /// What a medium does to light where its density is 1, in each channel of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelMedium<'a> {
@@ -58,6 +79,19 @@ pub enum ChannelPhases<'a> {
     Same(&'a PhaseFunction),
     /// One for each.
     Each([Cow<'a, PhaseFunction>; 4]),
+}
+
+impl ChannelMedium<'_> {
+    /// Extinction coefficients for light that travels along the unit vector `direction`, or against it.
+    pub fn mu_t_along(&self, direction: DVec3) -> DVec4 {
+        match &self.phases {
+            ChannelPhases::Same(phase) => self.mu_t * phase.projected_area(direction),
+            ChannelPhases::Each(phases) => {
+                let areas = phases.each_ref().map(|phase| phase.projected_area(direction));
+                self.mu_t * DVec4::from_array(areas)
+            }
+        }
+    }
 }
 
 impl ChannelPhases<'_> {

@@ -23,12 +23,13 @@ impl fmt::Display for SceneHash {
 ///
 /// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they
 /// name. It leaves out what does not change the expected picture: where the files are, names, unit, comments,
-/// samples per pixel, seed, integrator, exposure and layers.
+/// samples per pixel, seed, integrator, exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     canonical.unit.clear();
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
+    canonical.meters.clear();
     canonical.render =
         RenderDescription { max_depth: description.render.max_depth, ..RenderDescription::default() };
     let media =

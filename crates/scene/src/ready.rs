@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::light::Light;
-use crate::{Camera, Volume};
+use crate::{Camera, Observer, Volume};
 
 /// Everything that transport needs, in world space.
 #[derive(Debug, Clone)]
@@ -21,12 +21,19 @@ pub struct Scene {
     pub light_probabilities: Vec<f64>,
     /// Greatest number of scattering events on a path; unlimited if absent.
     pub max_depth: Option<u32>,
+    /// What the channels of the picture are.
+    pub observer: Observer,
 }
 
 impl Scene {
     /// Whether the extinction or the phase function of some medium depends on colour.
     pub fn is_chromatic(&self) -> bool {
         self.volumes.iter().any(|volume| volume.medium.chromatic.is_some())
+    }
+
+    /// Whether only the spectral integrator can render the scene: it is chromatic, or light of all wavelengths is wanted.
+    pub fn is_spectral(&self) -> bool {
+        self.is_chromatic() || self.observer != Observer::Rgb
     }
 
     /// The light for next-event estimation at `u` in [0, 1), and the probability with which it was drawn.
@@ -118,6 +125,7 @@ mod tests {
             lights,
             light_probabilities,
             max_depth: None,
+            observer: Observer::Rgb,
         };
         assert_eq!(scene.choose_light(0.2).map(|(_, p)| p), Some(0.25));
         assert_eq!(scene.choose_light(0.26).map(|(_, p)| p), Some(0.75));

@@ -95,6 +95,7 @@ impl SceneDescription {
                 sun_azimuth: Some(SUN[1]),
                 ..SkyDescription::default()
             })],
+            meters: Vec::new(),
         };
         AutomaticScene { notes: notes(summary), description }
     }

@@ -10,10 +10,16 @@ mod camera;
 mod film;
 mod lights;
 mod medium;
+mod meter;
+mod meter_rules;
+mod mie_spec;
+mod particles;
 mod phase;
 pub mod phase_spec;
+mod quantity;
 mod rgb;
 mod rules;
+mod spheres;
 mod transform;
 mod volume;
 
@@ -25,9 +31,16 @@ pub use lights::{
     PointLightDescription, SkyDescription, SunLightDescription,
 };
 pub use medium::{Coefficients, MediumDescription};
+pub use meter::{
+    BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
+    RadianceMeterDescription,
+};
+pub use particles::ParticlesDescription;
 pub use phase::{PhaseDescription, SggxShape};
+pub use quantity::Quantity;
 pub use rgb::Rgb;
 pub use rules::Violation;
+pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};
 pub use volume::{
     AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,
@@ -62,6 +75,9 @@ pub struct SceneDescription {
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,
+    /// What `tyndall measure` measures.
+    #[serde(default, rename = "meter", skip_serializing_if = "Vec::is_empty")]
+    pub meters: Vec<MeterDescription>,
 }
 
 fn default_unit() -> String {

@@ -44,7 +44,14 @@ impl Slab {
         let volumes = self.volumes();
         let layer = self.layer(&volumes);
         let tallies = run(&layer, options, cancel);
-        LayerFluxes { unscattered: Estimate::exact(self.unscattered()), ..layer.fluxes(&tallies) }
+        let fluxes = layer.fluxes(&tallies);
+        // Of oriented particles the extinction depends on the direction; τ is that of the most hindered.
+        let is_isotropic = DVec3::AXES.iter().all(|&axis| self.phase_function.projected_area(axis) == 1.0);
+        if is_isotropic {
+            LayerFluxes { unscattered: Estimate::exact(self.unscattered()), ..fluxes }
+        } else {
+            fluxes
+        }
     }
 
     fn volumes(&self) -> Vec<Volume> {
@@ -77,7 +84,6 @@ impl Slab {
             ground_albedo: self.ground_albedo,
             columns: None,
             views: self.views.clone(),
-            channel: 0,
             depth_limit,
         }
     }

@@ -6,9 +6,12 @@
 mod agreement;
 mod chromatic;
 mod estimators;
+mod phase_functions;
 mod rendering;
 mod same_bits;
 mod scenes;
 mod slab;
+mod spectrum;
 mod statistics;
+mod walk;
 mod white_furnace;
