@@ -1,12 +1,15 @@
 //! `tyndall estimators`: every distance sampler and every transmittance estimator on a scene, side by side.
 
 mod comparison;
+mod figures;
+mod page;
 mod pictures;
 mod rays;
 mod table;
 mod trial;
 
-use std::path::PathBuf;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -101,6 +104,11 @@ pub fn run(args: Args) -> miette::Result<()> {
         tell(format!("note: {note}"));
     }
     let report = report(&args, &built.scene, &input.description, notes)?;
+    if let Some(path) = &args.output {
+        let text = if is_html(path) { page::page(&report) } else { figures::sheet(&report) };
+        tyndall_film::write_atomically(path, |file| file.write_all(text.as_bytes())).into_diagnostic()?;
+        tell(format!("wrote {}", path.display()));
+    }
     if args.json {
         answer(serde_json::to_string(&report).into_diagnostic()? + "\n")
     } else {
@@ -161,9 +169,17 @@ fn choose_rays<'a>(args: &Args, scene: &'a Scene, name: &str) -> miette::Result<
 
 fn parse_output(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    match extension.as_deref() {
-        Some("html" | "svg") => Ok(path),
-        _ => Err("the name must end in .html or .svg".into()),
+    if is_html(&path) || has_extension(&path, "svg") {
+        Ok(path)
+    } else {
+        Err("the name must end in .html or .svg".into())
     }
+}
+
+fn is_html(path: &Path) -> bool {
+    has_extension(path, "html")
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
