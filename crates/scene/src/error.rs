@@ -61,15 +61,26 @@ impl Problem {
         Self {
             file: text.name().to_owned(),
             position: Some((line, column)),
-            message: message.into(),
+            message: one_line(message.into()),
             source: Some((Arc::clone(text), span)),
         }
     }
 
     /// A problem with a `--set` option, shown without a position: the option is one line.
     pub(crate) fn option(option: &str, message: impl Into<String>) -> Self {
-        Self { file: option.to_owned(), position: None, message: message.into(), source: None }
+        Self { file: option.to_owned(), position: None, message: one_line(message.into()), source: None }
     }
+}
+
+/// A message quotes the scene, which can hold line breaks and other control characters.
+fn one_line(message: String) -> String {
+    if !message.contains(char::is_control) {
+        return message;
+    }
+    message
+        .chars()
+        .map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() })
+        .collect()
 }
 
 impl From<Problem> for SceneError {

@@ -21,19 +21,28 @@ impl fmt::Display for SceneHash {
 
 /// Hash of a scene whose file names are relative to `folder`.
 ///
-/// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they
-/// name. It leaves out what does not change the expected picture: where the files are, names, unit, comments,
+/// It covers the camera, the resolution, `max_depth`, the mode of colours, media, volumes, lights and the bytes of the files they
+/// name. It leaves out what does not change the expected picture: where the files are, names, comments, the
+/// unit unless media are given in physical units,
 /// samples per pixel, seed, integrator, exposure and layers.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
-    canonical.unit.clear();
+    // Only what is given in physical units depends on it.
+    if !canonical.media().any(|medium| medium.preset.is_some()) {
+        canonical.unit.clear();
+    }
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
-    canonical.render =
-        RenderDescription { max_depth: description.render.max_depth, ..RenderDescription::default() };
+    let RenderDescription { max_depth, mode, .. } = description.render;
+    canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     for volume in &mut canonical.volumes {
         volume.name = None;
-        if let Some(file) = &mut volume.file {
+        let of_fields = [
+            volume.emission_grid.as_mut().map(|grid| &mut grid.file),
+            volume.temperature.as_mut().map(|grid| &mut grid.file),
+            volume.albedo_grid.as_mut().map(|grid| &mut grid.file),
+        ];
+        for file in of_fields.into_iter().flatten().chain([&mut volume.file]).flatten() {
             *file = content_hash(&folder.join(&file))?;
         }
     }

@@ -6,23 +6,29 @@
 #![forbid(unsafe_code)]
 
 mod build;
+mod build_fields;
+mod build_medium;
 mod camera;
 pub mod description;
 mod error;
+mod fields;
 mod hash;
 pub mod light;
 mod medium;
 pub mod procedural;
 mod ready;
 pub mod sky;
+mod spectra;
 mod toml;
 
 pub use self::build::{BuiltScene, build, choose_density};
 pub use self::camera::{Camera, Ray};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
+pub use self::fields::{Field, Fields, TemperatureField};
 pub use self::hash::{SceneHash, scene_hash};
 pub use self::light::{Light, LightSample};
-pub use self::medium::{Density, Medium, Volume};
+pub use self::medium::{ChromaticMedium, Density, Medium, Volume};
 pub use self::ready::Scene;
+pub use self::spectra::{MediumSpectra, SpectralCoefficients};
 pub use self::toml::{SceneDocument, json_schema};

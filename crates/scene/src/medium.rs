@@ -5,12 +5,12 @@ use std::sync::Arc;
 use tyndall_optics::PhaseFunction;
 use tyndall_volumes::BrickGrid;
 
-use crate::Ray;
+use crate::{Fields, MediumSpectra, Ray};
 
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient μt, 1/scene unit.
+    /// Extinction coefficient μt, 1/scene unit; of a chromatic medium the mean of its channels.
     pub mu_t: f64,
     /// Single-scattering albedo μs/μt, linear RGB in 0…1.
     pub albedo: DVec3,
@@ -18,6 +18,21 @@ pub struct Medium {
     pub phase_function: PhaseFunction,
     /// Emitted radiance Le; the source term of the volume rendering equation is μa·Le.
     pub emission: DVec3,
+    /// Radiance added per length, 1/scene unit, independent of absorption.
+    pub emission_per_length: DVec3,
+    /// What depends on colour beside albedo and emission; it takes the place of `mu_t` and `phase_function`.
+    pub chromatic: Option<Arc<ChromaticMedium>>,
+    /// The same by wavelength; media made in code may lack it.
+    pub spectra: Option<Arc<MediumSpectra>>,
+}
+
+/// What of a medium depends on colour, beside its albedo and emission.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChromaticMedium {
+    /// Extinction coefficient μt in red, green and blue, 1/scene unit.
+    pub mu_t: DVec3,
+    /// Phase functions of red, green and blue, if they differ.
+    pub phase_functions: Option<[PhaseFunction; 3]>,
 }
 
 /// Where the density of a volume comes from, in the volume's local coordinates.
@@ -66,6 +81,8 @@ pub struct Volume {
     pub density: Density,
     /// The coefficients at density 1.
     pub medium: Medium,
+    /// What varies beside the density.
+    pub fields: Option<Arc<Fields>>,
 }
 
 impl Volume {
@@ -236,8 +253,11 @@ mod tests {
             albedo: DVec3::ONE,
             phase_function: PhaseFunction::Isotropic,
             emission: DVec3::ZERO,
+            emission_per_length: DVec3::ZERO,
+            chromatic: None,
+            spectra: None,
         };
-        Volume { name: "test".into(), world_to_local, density, medium }
+        Volume { name: "test".into(), world_to_local, density, medium, fields: None }
     }
 
     fn interval(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {

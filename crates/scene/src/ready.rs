@@ -1,6 +1,7 @@
 //! A scene ready to trace.
 
 use glam::DVec3;
+use tyndall_optics::Spectrum;
 
 use crate::light::Light;
 use crate::{Camera, Volume};
@@ -16,6 +17,9 @@ pub struct Scene {
     pub volumes: Vec<Volume>,
     /// Lights.
     pub lights: Vec<Light>,
+    /// For each light its spectrum at luminance 1, if that is not the one of its red, green and blue: at a wavelength the
+    /// light is the spectrum times the luminance of what it shines in RGB.
+    pub light_spectra: Vec<Option<Spectrum>>,
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
     /// well by themselves, and sums to 1 unless it is 0 for all.
     pub light_probabilities: Vec<f64>,
@@ -110,6 +114,7 @@ mod tests {
             camera,
             resolution: [1, 1],
             volumes: vec![],
+            light_spectra: vec![None; lights.len()],
             lights,
             light_probabilities,
             max_depth: None,

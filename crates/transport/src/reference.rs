@@ -5,6 +5,7 @@
 //! It is plain to read and is the oracle for every faster way. Term by term:
 //! - y is drawn with density μt·T by distance sampling, so T μt cancels and a collision leaves
 //!   (1 − albedo)·Le + albedo·Ls, while a ray that leaves without one has met T·Lo;
+//! - light that is given per length is gathered on the way to that collision (see [`emission_along`]);
 //! - Ls is split between next-event estimation (a light is drawn, the transmittance towards it estimated) and
 //!   the continued path (a direction is drawn from the phase function), joined by multiple importance sampling with
 //!   the balance heuristic (Veach 1997, chapter 9);
@@ -16,6 +17,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::{Ray, Scene, Volume};
 
 use crate::distance::sample_distance;
+use crate::emission::emission_along;
 use crate::transmittance::estimate_transmittance;
 
 /// Throughput below which roulette is played.
@@ -30,7 +32,12 @@ pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
     let mut scatterings = 0;
 
     loop {
-        let Some((distance, volume)) = first_collision(scene, &ray, random) else {
+        let collision = first_collision(scene, &ray, random);
+        let end = collision.map_or(f64::INFINITY, |(distance, _)| distance);
+        for volume in &scene.volumes {
+            layers.emission += throughput * emission_along(volume, &ray, end, random);
+        }
+        let Some((distance, volume)) = collision else {
             layers.add_in_scattered(
                 scatterings,
                 throughput * escaped_radiance(scene, ray.direction, phase_pdf),
@@ -39,16 +46,17 @@ pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
         };
         let position = ray.at(distance);
         let medium = &volume.medium;
+        let albedo = volume.albedo_at(position);
         if scatterings == 0 {
-            layers.first_collision(distance, medium.albedo);
+            layers.first_collision(distance, albedo);
         }
 
-        layers.emission += throughput * (DVec3::ONE - medium.albedo) * medium.emission;
+        layers.emission += throughput * (DVec3::ONE - albedo) * volume.emission_at(position);
 
         if scene.max_depth.is_some_and(|depth| scatterings >= depth) {
             break;
         }
-        throughput *= medium.albedo;
+        throughput *= albedo;
         if !survives_roulette(&mut throughput, random) {
             break;
         }

@@ -11,7 +11,7 @@ use tyndall_volumes::GridClass;
 use super::lights::direction_of_compass;
 use super::{
     CameraDescription, FilmDescription, GridMeaning, LightDescription, MediumDescription, PhaseDescription,
-    Rgb, SceneDescription, SkyDescription, VolumeDescription,
+    SceneDescription, SkyDescription, VolumeDescription,
 };
 
 /// What is known of a grid when a scene for it is made up.
@@ -83,9 +83,9 @@ impl SceneDescription {
                 grid: Some(summary.grid_name.clone()),
                 values: Some(if is_level_set { GridMeaning::SignedDistance } else { GridMeaning::Density }),
                 medium: MediumDescription {
-                    mu_t: Some(extinction(summary)),
-                    albedo: Some(Rgb::Grey(ALBEDO)),
-                    phase: PhaseDescription::Hg { g: ASYMMETRY },
+                    mu_t: Some(extinction(summary).into()),
+                    albedo: Some(ALBEDO.into()),
+                    phase: Some(PhaseDescription::Hg { g: ASYMMETRY }),
                     ..MediumDescription::default()
                 },
                 ..VolumeDescription::default()
@@ -222,6 +222,7 @@ fn notes(summary: &VolumeSummary) -> Vec<(Vec<String>, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::SpectrumDescription;
     use crate::{Camera, SceneDocument};
 
     fn summary() -> VolumeSummary {
@@ -277,7 +278,9 @@ mod tests {
     #[test]
     fn the_density_scale_gives_the_body_its_optical_thickness() {
         let scene = SceneDescription::for_volume("a.vdb", &summary());
-        let mu_t = scene.description.volumes[0].medium.mu_t.unwrap();
+        let Some(SpectrumDescription::Grey(mu_t)) = scene.description.volumes[0].medium.mu_t else {
+            panic!("{:?}", scene.description.volumes[0].medium)
+        };
         // The middle edge is 20, half of which the active eighth of the box fills.
         assert!((mu_t * 0.25 * 10.0 - 16.0).abs() < 0.02, "{mu_t}");
     }

@@ -6,25 +6,31 @@
 
 mod automatic;
 mod camera;
+mod emission;
 mod film;
 mod lights;
 mod medium;
 mod rgb;
 mod rules;
+mod spectrum;
 mod transform;
+mod units;
 mod volume;
 
 pub use automatic::{AutomaticScene, VolumeSummary};
 pub use camera::CameraDescription;
-pub use film::{FilmDescription, Integrator, Layer, RenderDescription};
+pub use emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
+pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription};
 pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
     PointLightDescription, SkyDescription, SunLightDescription,
 };
-pub use medium::{Coefficients, MediumDescription, PhaseDescription};
+pub use medium::{MediumDescription, PhaseDescription};
 pub use rgb::Rgb;
 pub use rules::Violation;
+pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
 pub use transform::{Scale, TransformDescription};
+pub use units::unit_in_metres;
 pub use volume::{
     AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,
     SphereShape, Storage, VolumeDescription, VolumeSource,
@@ -37,7 +43,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Tyndall scene")]
 pub struct SceneDescription {
-    /// Name of the scene's unit of length; informational. Coefficients are per this unit.
+    /// The scene's unit of length: `m`, `cm`, `mm`, `km`, … Coefficients are per this unit; it matters only to what is
+    /// given in physical units, such as a `preset`.
     #[serde(default = "default_unit")]
     pub unit: String,
     /// The camera.
@@ -66,4 +73,11 @@ fn default_unit() -> String {
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
+}
+
+impl SceneDescription {
+    /// The media of the scene, everywhere and in volumes.
+    pub fn media(&self) -> impl Iterator<Item = &MediumDescription> {
+        self.medium.iter().chain(self.volumes.iter().map(|volume| &volume.medium))
+    }
 }
