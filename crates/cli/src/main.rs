@@ -2,10 +2,14 @@
 
 mod convert;
 mod diff;
+mod effort;
 mod inspect;
+mod interrupt;
+mod measured;
 mod merge;
 mod output;
 mod render;
+mod slab;
 mod terminal;
 mod volume_input;
 
@@ -22,7 +26,8 @@ Examples:
   tyndall render smoke.vdb -o smoke.png          a picture of an OpenVDB file: light, camera, density are chosen
   tyndall render smoke.vdb --print-scene > smoke.toml    ... and the choices as a scene file, to go on from
   tyndall render smoke.toml -o smoke.exr --error 1%      renders until the error is 1 %
-  tyndall diff a.exr b.exr                       whether two pictures differ beyond their noise"
+  tyndall diff a.exr b.exr                       whether two pictures differ beyond their noise
+  tyndall slab --tau 2 --albedo 0.9 --g 0.75             what a layer reflects, transmits and absorbs"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -36,6 +41,7 @@ enum Command {
     Convert(convert::Args),
     Merge(merge::Args),
     Diff(diff::Args),
+    Slab(Box<slab::Args>),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -68,6 +74,7 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
     match command {
         None => return render::run(render::Args::default_scene()),
         Some(Command::Render(args)) => return render::run(*args),
+        Some(Command::Slab(args)) => return slab::run(*args),
         Some(Command::Inspect(args)) => inspect::run(args)?,
         Some(Command::Convert(args)) => convert::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,

@@ -2,7 +2,7 @@
 
 pub mod input;
 mod progress;
-mod stop;
+pub mod stop;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Film, ImageMetadata, Layers};
 use tyndall_scene::description::{Integrator, Layer, SceneDescription};
 use tyndall_scene::{Scene, build, scene_hash};
-use tyndall_transport::{Control, Outcome, RenderOptions, render_pass};
+use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
 use crate::output::{Output, check_writable, parse_exposure, write_all};
@@ -120,6 +120,9 @@ pub fn run(args: Args) -> miette::Result<Done> {
     for note in input.notes.iter().chain(&built.notes) {
         tell(format!("note: {note}"));
     }
+    if built.scene.is_chromatic() {
+        tell("note: some extinction or phase function depends on colour: the spectral integrator renders");
+    }
     let mut picture = open_picture(&args, description, &input.folder, film)?;
     let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
     let end = render(&args, &built.scene, description, &plan, &mut picture)?;
@@ -214,6 +217,7 @@ fn render(
         integrator: description.render.integrator,
         seed: picture.metadata.seed,
         threads: args.threads.map_or(cores, usize::from),
+        estimators: Estimators::default(),
     };
     let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
     let mut clock = stop::Clock::start(picture.metadata.seconds);

@@ -11,5 +11,5 @@ pub mod presets;
 mod spectrum;
 pub mod uplift;
 
-pub use phase_function::PhaseFunction;
+pub use phase_function::{PhaseFunction, SpectralPhase};
 pub use spectrum::{Spectrum, SpectrumError};

@@ -40,7 +40,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
             name: "medium".into(),
             world_to_local: DAffine3::IDENTITY,
             density: Density::Everywhere,
-            medium: build_medium(medium, &description.unit, 1.0, "medium")?,
+            medium: build_medium(medium, &description.unit, folder, 1.0, "medium")?,
             fields: None,
         });
     }
@@ -120,7 +120,7 @@ fn build_volume(
         ));
     }
     let emission_scale = description.emission_scale.unwrap_or(1.0);
-    let medium = build_medium(&description.medium, unit, emission_scale, &name)?;
+    let medium = build_medium(&description.medium, unit, folder, emission_scale, &name)?;
     let fields = build_fields(description, folder, to_scene, &name, notes)?;
     Ok(Volume { name, world_to_local, density, medium, fields })
 }

@@ -4,28 +4,37 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
-use tyndall_optics::{PhaseFunction, Spectrum};
+use tyndall_optics::Spectrum;
 
-use crate::description::{KeyProblem, MediumDescription, PhaseDescription, SpectrumDescription};
-use crate::{ChromaticMedium, Medium, MediumSpectra, SceneError};
+use crate::description::{KeyProblem, MediumDescription, SpectrumDescription};
+use crate::phase::build_phase;
+use crate::{ChromaticMedium, Medium, MediumPhase, MediumSpectra, SceneError};
 
 /// Relative difference between channels that still counts as grey: decimals that were rounded.
 const GREY_TOLERANCE: f64 = 1e-6;
 
-/// The medium, of which messages say `name`; `unit` is the scene's and `emission_scale` multiplies what it emits.
+/// Wavelength, in nm, whose phase function stands for all where there is one for all.
+const GREY_NM: f64 = 550.0;
+
+/// The medium, of which messages say `name`; `unit` is the scene's, file names are relative to `folder`, and
+/// `emission_scale` multiplies what it emits.
 pub(crate) fn build_medium(
     description: &MediumDescription,
     unit: &str,
+    folder: &Path,
     emission_scale: f64,
     name: &str,
 ) -> Result<Medium, SceneError> {
     let refuse = |message: String| SceneError::file(Path::new(name), message);
-    let phase_function = match description.phase.unwrap_or_default() {
-        PhaseDescription::Isotropic => PhaseFunction::Isotropic,
-        PhaseDescription::Hg { g } => PhaseFunction::HenyeyGreenstein { g },
+    let phase = match description.preset_g() {
+        Some(g) => MediumPhase::HenyeyGreenstein(g),
+        None => MediumPhase::ByWavelength(build_phase(
+            description.phase.as_ref().unwrap_or(&Default::default()),
+            folder,
+        )?),
     };
     let coefficients = description
-        .coefficients(unit, phase_function.mean_cosine())
+        .coefficients(unit, phase.at(GREY_NM).mean_cosine())
         .map_err(|(_, message)| refuse(message))?;
     let light = |emission: &Option<SpectrumDescription>| -> Result<Spectrum, SceneError> {
         let spectrum = emission.as_ref().map(SpectrumDescription::light).transpose();
@@ -35,14 +44,14 @@ pub(crate) fn build_medium(
     let spectra = MediumSpectra {
         emission: light(&description.emission)?,
         emission_per_length: light(&description.emission_per_length)?,
-        g: description.preset_g(),
+        phase,
         coefficients,
     };
-    Ok(of_spectra(spectra, phase_function))
+    Ok(of_spectra(spectra))
 }
 
 /// The red, green and blue of a medium, and whether they differ in more than albedo and emission.
-fn of_spectra(spectra: MediumSpectra, phase_function: PhaseFunction) -> Medium {
+fn of_spectra(spectra: MediumSpectra) -> Medium {
     let channels = spectra.coefficients.mu_t_rgb();
     let mu_t = if channels.x == channels.y && channels.y == channels.z {
         channels.x
@@ -51,11 +60,8 @@ fn of_spectra(spectra: MediumSpectra, phase_function: PhaseFunction) -> Medium {
     };
     let is_coloured =
         channels.max_element() - channels.min_element() > GREY_TOLERANCE * channels.max_element();
-    let phase_functions = spectra.phase_functions_rgb();
-    let phase_function = match &phase_functions {
-        Some([_, green, _]) => green.clone(),
-        None => phase_function,
-    };
+    let phase_functions = spectra.phase.rgb();
+    let phase_function = spectra.phase.at(GREY_NM);
     let chromatic = (is_coloured || phase_functions.is_some())
         .then(|| Arc::new(ChromaticMedium { mu_t: channels, phase_functions }));
     let light = |spectrum: &Spectrum| if spectrum.is_zero() { DVec3::ZERO } else { spectrum.light_rgb() };

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::description::{LightDescription, RenderDescription, SceneDescription};
+use crate::description::{LightDescription, PhaseDescription, RenderDescription, SceneDescription};
 use crate::error::SceneError;
 
 /// The first 128 bits of a SHA-256 over everything that determines the expected picture.
@@ -35,6 +35,12 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.film.layers = None;
     let RenderDescription { max_depth, mode, .. } = description.render;
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
+    let media =
+        canonical.medium.iter_mut().chain(canonical.volumes.iter_mut().map(|volume| &mut volume.medium));
+    let phases = media.filter_map(|medium| medium.phase.as_mut());
+    for file in phases.filter_map(PhaseDescription::file_mut) {
+        *file = content_hash(&folder.join(&file))?;
+    }
     for volume in &mut canonical.volumes {
         volume.name = None;
         let of_fields = [

@@ -10,7 +10,8 @@ use crate::{Fields, MediumSpectra, Ray};
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient μt, 1/scene unit; of a chromatic medium the mean of its channels.
+    /// Extinction coefficient μt, 1/scene unit: of oriented particles, the greatest over all directions (see
+    /// [`Medium::mu_t_along`]); of a chromatic medium, the mean of its channels.
     pub mu_t: f64,
     /// Single-scattering albedo μs/μt, linear RGB in 0…1.
     pub albedo: DVec3,
@@ -33,6 +34,13 @@ pub struct ChromaticMedium {
     pub mu_t: DVec3,
     /// Phase functions of red, green and blue, if they differ.
     pub phase_functions: Option<[PhaseFunction; 3]>,
+}
+
+impl Medium {
+    /// Extinction coefficient for light that travels along the unit vector `direction`, or against it.
+    pub fn mu_t_along(&self, direction: DVec3) -> f64 {
+        self.mu_t * self.phase_function.projected_area(direction)
+    }
 }
 
 /// Where the density of a volume comes from, in the volume's local coordinates.

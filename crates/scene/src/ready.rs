@@ -28,6 +28,11 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether the extinction or the phase function of some medium depends on colour.
+    pub fn is_chromatic(&self) -> bool {
+        self.volumes.iter().any(|volume| volume.medium.chromatic.is_some())
+    }
+
     /// The light for next-event estimation at `u` in [0, 1), and the probability with which it was drawn.
     pub fn choose_light(&self, u: f64) -> Option<(&Light, f64)> {
         let mut rest = u;

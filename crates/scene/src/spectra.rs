@@ -4,7 +4,7 @@
 //! quotients are the sums and quotients of the channels.
 
 use glam::DVec3;
-use tyndall_optics::{PhaseFunction, Spectrum};
+use tyndall_optics::{PhaseFunction, SpectralPhase, Spectrum};
 
 /// What a medium does to light where its density is 1, by wavelength.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,9 +15,8 @@ pub struct MediumSpectra {
     pub emission: Spectrum,
     /// Radiance added per length, independent of absorption.
     pub emission_per_length: Spectrum,
-    /// Mean cosine of the Henyey-Greenstein phase function, if it depends on colour; otherwise the medium's phase
-    /// function holds at all wavelengths.
-    pub g: Option<Spectrum>,
+    /// The phase functions.
+    pub phase: MediumPhase,
 }
 
 /// Coefficients in the form in which they were given.
@@ -95,14 +94,44 @@ impl SpectralCoefficients {
     }
 }
 
-impl MediumSpectra {
-    /// The Henyey-Greenstein phase function at a wavelength in nm, if it depends on colour.
-    pub fn phase_function(&self, wavelength_nm: f64) -> Option<PhaseFunction> {
-        self.g.as_ref().map(|g| PhaseFunction::HenyeyGreenstein { g: g.at(wavelength_nm) })
+/// Phase functions by wavelength.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MediumPhase {
+    /// Given for some wavelengths, or one for all.
+    ByWavelength(SpectralPhase),
+    /// Henyey and Greenstein's, with a mean cosine for each wavelength.
+    HenyeyGreenstein(Spectrum),
+}
+
+/// Wavelengths, in nm, that have the hues of the primaries red, green and blue of Rec. 709.
+const PRIMARIES_NM: [f64; 3] = [611.4, 549.1, 464.3];
+
+impl MediumPhase {
+    /// The phase function at a wavelength in nm.
+    pub fn at(&self, wavelength_nm: f64) -> PhaseFunction {
+        match self {
+            Self::ByWavelength(phase) => phase.at(wavelength_nm),
+            Self::HenyeyGreenstein(g) => PhaseFunction::HenyeyGreenstein { g: g.at(wavelength_nm) },
+        }
     }
 
-    /// The phase functions of red, green and blue, if they differ.
-    pub fn phase_functions_rgb(&self) -> Option<[PhaseFunction; 3]> {
-        self.g.as_ref().map(|g| g.rgb().to_array().map(|g| PhaseFunction::HenyeyGreenstein { g }))
+    /// Whether it is the same at all wavelengths.
+    pub fn is_grey(&self) -> bool {
+        match self {
+            Self::ByWavelength(phase) => phase.is_grey(),
+            Self::HenyeyGreenstein(g) => g.is_grey(),
+        }
+    }
+
+    /// The phase functions of red, green and blue, if they differ: of those given by wavelength the ones at the hues of the
+    /// primaries.
+    pub fn rgb(&self) -> Option<[PhaseFunction; 3]> {
+        if self.is_grey() {
+            return None;
+        }
+        Some(match self {
+            Self::ByWavelength(phase) => PRIMARIES_NM.map(|nm| phase.at(nm)),
+            Self::HenyeyGreenstein(g) => g.rgb().to_array().map(|g| PhaseFunction::HenyeyGreenstein { g }),
+        })
     }
 }

@@ -142,7 +142,21 @@ fn medium() -> impl Strategy<Value = MediumDescription> {
     ];
     let phase = of(prop_oneof![
         Just(PhaseDescription::Isotropic),
-        within(-0.999, 0.999).prop_map(|g| PhaseDescription::Hg { g })
+        Just(PhaseDescription::Rayleigh),
+        within(-0.999, 0.999).prop_map(|g| PhaseDescription::Hg { g }),
+        within(-0.999, 0.999).prop_map(|k| PhaseDescription::Schlick { k }),
+        within(-0.999, 0.999).prop_map(|g| PhaseDescription::CornetteShanks { g }),
+        (within(-0.999, 0.999), within(0.0, 300.0))
+            .prop_map(|(g, alpha)| PhaseDescription::Draine { g, alpha }),
+        (within(-0.999, 0.999), within(-0.999, 0.999), within(0.0, 1.0))
+            .prop_map(|(g1, g2, weight)| PhaseDescription::DoubleHg { g1, g2, weight }),
+        within(0.001, 50.0).prop_map(|droplet_diameter_um| PhaseDescription::Fog { droplet_diameter_um }),
+        (direction(), within(0.001, 1.0), any::<bool>()).prop_map(|(axis, roughness, flat)| {
+            let kind = if flat { SggxShape::Surface } else { SggxShape::Fibre };
+            PhaseDescription::Sggx { kind, axis, roughness }
+        }),
+        (words(), of(within(1.0, 2000.0)))
+            .prop_map(|(file, wavelength_nm)| PhaseDescription::Tabulated { file, wavelength_nm }),
     ]);
     (coefficients, phase, of(light_colours()), of(colours(9.0)), of(within(1e-3, 1e3))).prop_map(
         |(medium, phase, emission, emission_per_length, scale)| MediumDescription {

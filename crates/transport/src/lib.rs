@@ -1,17 +1,31 @@
 //! How light moves: the reference path tracer of the volume rendering equation and the fast engine.
 //!
-//! `distance` and `transmittance` hold one estimator a file; `reference` puts them together as the equation reads;
-//! `emission` gathers what media send out; `fast` does the same with many paths at once. [`render_pass`] fills a film with either.
+//! `along_ray` is the extinction along one ray, which is all that an estimator sees; `distance` and `transmittance` hold one
+//! estimator a file; `emission` gathers what media send out; `reference` puts them together as the equation reads; `fast`
+//! does the same with many paths at once, `spectral` in media that depend on colour. [`render_pass`] fills a film with any
+//! of them. [`walk`] follows light the other way, from where it enters, for fluxes.
 
-mod distance;
+pub mod along_ray;
+pub mod distance;
 mod emission;
+mod equiangular_light;
+mod estimators;
 mod fast;
+mod properties;
 mod reference;
 mod render;
-mod transmittance;
+mod repeat;
+mod spectral;
+pub mod transmittance;
+pub mod walk;
 
-pub use distance::sample_distance;
+pub use along_ray::{AlongRay, Lookups};
+pub use distance::{DistanceSampler, Flight, sample_distance};
 pub use emission::{emission_along, emitting_length};
-pub use reference::trace;
+pub use estimators::Estimators;
+pub use properties::{MajorantUse, Need, Properties, Reason};
+pub use reference::{trace, trace_with};
 pub use render::{Control, Outcome, RenderOptions, render_pass};
-pub use transmittance::estimate_transmittance;
+pub use repeat::{Repeated, repeat_distance, repeat_transmittance};
+pub use spectral::SpectralScene;
+pub use transmittance::{TransmittanceEstimator, estimate_transmittance};

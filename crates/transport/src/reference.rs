@@ -10,50 +10,70 @@
 //!   the continued path (a direction is drawn from the phase function), joined by multiple importance sampling with
 //!   the balance heuristic (Veach 1997, chapter 9);
 //! - a path ends when it leaves, at `max_depth` scattering events, or by Russian roulette on its throughput.
+//!
+//! Any pair of a distance sampler and a transmittance estimator fits in ([`Estimators`]). One whose flights have weights
+//! multiplies the throughput by them; a flight may have both a collision and an escape. Negative weights count in roulette
+//! by their size.
 
 use glam::DVec3;
 use tyndall_film::Sample;
 use tyndall_lanes::Random;
-use tyndall_scene::{Ray, Scene, Volume};
+use tyndall_scene::{Light, Ray, Scene, Volume};
 
-use crate::distance::sample_distance;
 use crate::emission::emission_along;
-use crate::transmittance::estimate_transmittance;
+use crate::equiangular_light::LitSegment;
+use crate::estimators::Estimators;
 
 /// Throughput below which roulette is played.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
 
 /// One estimate of the radiance that arrives along `ray`, sorted into the film's layers.
-pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
+pub fn trace(scene: &Scene, ray: Ray, random: &mut Random) -> Sample {
+    trace_with(scene, Estimators::default(), ray, random)
+}
+
+/// The same with chosen estimators, which must be [valid](Estimators::validate) for the scene.
+pub fn trace_with(scene: &Scene, estimators: Estimators, mut ray: Ray, random: &mut Random) -> Sample {
     let mut layers = Layers::default();
     let mut throughput = DVec3::ONE;
     // Density with which the ray's direction was drawn from a phase function; none for the camera's own ray.
     let mut phase_pdf = None;
     let mut scatterings = 0;
+    let shines = scene.volumes.iter().any(|volume| volume.medium.emission_per_length != DVec3::ZERO);
 
     loop {
-        let collision = first_collision(scene, &ray, random);
-        let end = collision.map_or(f64::INFINITY, |(distance, _)| distance);
-        for volume in &scene.volumes {
-            layers.emission += throughput * emission_along(volume, &ray, end, random);
+        let flight = estimators.fly(scene, &ray, random);
+        if scatterings == 0 || shines {
+            let collision = estimators.analog_collision(scene, &ray, &flight, random);
+            if scatterings == 0 {
+                let albedo =
+                    |(distance, volume): (f64, &Volume)| (distance, volume.albedo_at(ray.at(distance)));
+                layers.first_collision = collision.map(albedo);
+            }
+            let end = collision.map_or(f64::INFINITY, |(distance, _)| distance);
+            for volume in scene.volumes.iter().filter(|_| shines) {
+                layers.emission += throughput * emission_along(volume, &ray, end, random);
+            }
         }
-        let Some((distance, volume)) = collision else {
-            layers.add_in_scattered(
-                scatterings,
-                throughput * escaped_radiance(scene, ray.direction, phase_pdf),
-            );
-            break;
-        };
+        if flight.escape != 0.0 {
+            let escaped = throughput * flight.escape * escaped_radiance(scene, ray.direction, phase_pdf);
+            layers.add_in_scattered(scatterings, escaped);
+        }
+        let may_scatter = scene.max_depth.is_none_or(|depth| scatterings < depth);
+        let lit_segment = estimators.lit_segment(scene, &ray).filter(|_| may_scatter);
+        if let Some(segment) = &lit_segment {
+            let lit = segment.in_scattered(scene, estimators, random);
+            layers.add_in_scattered(scatterings + 1, throughput * lit);
+        }
+        let Some((distance, volume)) = flight.collision else { break };
+        throughput *= flight.weight;
         let position = ray.at(distance);
         let medium = &volume.medium;
         let albedo = volume.albedo_at(position);
-        if scatterings == 0 {
-            layers.first_collision(distance, albedo);
-        }
 
         layers.emission += throughput * (DVec3::ONE - albedo) * volume.emission_at(position);
 
-        if scene.max_depth.is_some_and(|depth| scatterings >= depth) {
+        if !may_scatter {
             break;
         }
         throughput *= albedo;
@@ -62,7 +82,8 @@ pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
         }
         scatterings += 1;
 
-        let direct = next_event(scene, position, ray.direction, volume, random);
+        let shadow = Shadow { scene, estimators, segment: lit_segment.map(|segment| (segment, distance)) };
+        let direct = shadow.next_event(position, ray.direction, volume, random);
         layers.add_in_scattered(scatterings, throughput * direct);
 
         let onward = medium.phase_function.sample(ray.direction, [random.f64(), random.f64()]);
@@ -70,20 +91,6 @@ pub fn trace(scene: &Scene, mut ray: Ray, random: &mut Random) -> Sample {
         ray = Ray { origin: position, direction: onward };
     }
     layers.into_sample()
-}
-
-/// The nearest collision with any of the volumes: overlapping media are independent of each other, so the first of
-/// their first collisions follows the sum of their extinctions.
-fn first_collision<'a>(scene: &'a Scene, ray: &Ray, random: &mut Random) -> Option<(f64, &'a Volume)> {
-    let mut nearest = None;
-    let mut end = f64::INFINITY;
-    for volume in &scene.volumes {
-        if let Some(distance) = sample_distance(volume, ray, end, random) {
-            end = distance;
-            nearest = Some((distance, volume));
-        }
-    }
-    nearest
 }
 
 /// Lo: radiance of the infinite lights in `direction`, each weighted against next-event estimation having drawn it.
@@ -102,33 +109,40 @@ fn escaped_radiance(scene: &Scene, direction: DVec3, phase_pdf: Option<f64>) -> 
         .sum()
 }
 
-/// Next-event estimation of ∫ f_p L dω over the light that arrives unscattered at `position`.
-fn next_event(scene: &Scene, position: DVec3, before: DVec3, volume: &Volume, random: &mut Random) -> DVec3 {
-    let Some((light, probability)) = scene.choose_light(random.f64()) else {
-        return DVec3::ZERO;
-    };
-    let sample = light.sample(position, [random.f64(), random.f64()]);
-    let phase = volume.medium.phase_function.value(before, sample.toward);
-    let light_pdf = probability * sample.pdf;
-    let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + phase) };
-    let unshadowed = sample.radiance_over_pdf * (phase * weight / probability);
-    if unshadowed == DVec3::ZERO {
-        return DVec3::ZERO;
-    }
-    let shadow_ray = Ray { origin: position, direction: sample.toward };
-    let mut transmittance = 1.0;
-    for volume in &scene.volumes {
-        transmittance *= estimate_transmittance(volume, &shadow_ray, sample.distance, random);
-        if transmittance == 0.0 {
+/// What next-event estimation at a collision has to know.
+struct Shadow<'a> {
+    scene: &'a Scene,
+    estimators: Estimators,
+    /// The stretch of the path up to the collision, and its distance, if point lights are sampled along it as well.
+    segment: Option<(LitSegment<'a>, f64)>,
+}
+
+impl Shadow<'_> {
+    /// Next-event estimation of ∫ f_p L dω over the light that arrives unscattered at `position`.
+    fn next_event(&self, position: DVec3, before: DVec3, volume: &Volume, random: &mut Random) -> DVec3 {
+        let Some((light, probability)) = self.scene.choose_light(random.f64()) else {
+            return DVec3::ZERO;
+        };
+        let sample = light.sample(position, [random.f64(), random.f64()]);
+        let phase = volume.medium.phase_function.value(before, sample.toward);
+        let light_pdf = probability * sample.pdf;
+        let weight = match (light, &self.segment) {
+            (Light::Point(light), Some((segment, distance))) => segment.collision_weight(light, *distance),
+            _ if sample.is_delta => 1.0,
+            _ => light_pdf / (light_pdf + phase),
+        };
+        let unshadowed = sample.radiance_over_pdf * (phase * weight / probability);
+        if unshadowed == DVec3::ZERO {
             return DVec3::ZERO;
         }
+        let shadow_ray = Ray { origin: position, direction: sample.toward };
+        unshadowed * self.estimators.transmittance(self.scene, &shadow_ray, sample.distance, random)
     }
-    unshadowed * transmittance
 }
 
 /// Ends a weak path with a probability that its survivors' weight makes up for.
 fn survives_roulette(throughput: &mut DVec3, random: &mut Random) -> bool {
-    let strength = throughput.max_element();
+    let strength = throughput.abs().max_element();
     if strength >= ROULETTE_THROUGHPUT {
         return true;
     }
@@ -147,14 +161,11 @@ struct Layers {
     emission: DVec3,
     single: DVec3,
     multiple: DVec3,
-    collision: Option<(f64, DVec3)>,
+    /// Distance and albedo of the camera ray's first collision.
+    first_collision: Option<(f64, DVec3)>,
 }
 
 impl Layers {
-    fn first_collision(&mut self, distance: f64, albedo: DVec3) {
-        self.collision = Some((distance, albedo));
-    }
-
     fn add_in_scattered(&mut self, scatterings: u32, radiance: DVec3) {
         match scatterings {
             0 => self.background += radiance,
@@ -165,10 +176,10 @@ impl Layers {
 
     fn into_sample(self) -> Sample {
         let radiance = self.background + self.emission + self.single + self.multiple;
-        let (depth, albedo) = self.collision.unwrap_or_default();
+        let (depth, albedo) = self.first_collision.unwrap_or_default();
         Sample {
             radiance: radiance.as_vec3().to_array(),
-            hit: self.collision.is_some(),
+            hit: self.first_collision.is_some(),
             depth: depth as f32,
             albedo: albedo.as_vec3().to_array(),
             emission: self.emission.as_vec3().to_array(),

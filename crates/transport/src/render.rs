@@ -1,27 +1,31 @@
-//! One pass over the film: blocks of tiles shared out among threads, by either integrator.
+//! One pass over the film: blocks of tiles shared out among threads, by any integrator.
 //!
 //! Which thread renders which block, and in which order, changes nothing: every path has random numbers of its own
 //! and the film adds exactly.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use tyndall_film::{Film, FilmTile, TILE_EDGE};
+use tyndall_film::{Film, FilmTile, Sample, TILE_EDGE};
 use tyndall_lanes::Random;
-use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
+use tyndall_scene::{Channels, Ray, Scene};
 
+use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::reference;
+use crate::spectral::SpectralScene;
 
 /// How to render.
 #[derive(Debug, Clone, Copy)]
 pub struct RenderOptions {
-    /// Which integrator.
+    /// Which integrator; a chromatic scene has the spectral one, whatever stands here.
     pub integrator: Integrator,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Number of threads, at least 1.
     pub threads: usize,
+    /// Which estimators the reference integrator uses; the fast one has its own.
+    pub estimators: Estimators,
 }
 
 /// What a render tells and is told while it runs.
@@ -57,17 +61,23 @@ pub fn render_pass(
     control: &Control,
 ) -> Outcome {
     let blocks = blocks(film);
-    let fast_scene = FastScene::new(scene);
+    let engine = Engine::new(scene, options.integrator);
     let next_block = AtomicUsize::new(0);
     let film = Mutex::new(film);
     let work = || {
         while let Some(block) = blocks.get(next_block.fetch_add(1, Ordering::Relaxed)) {
             let mut tiles = open_tiles(&lock(&film), block, end);
-            let complete = match options.integrator {
-                Integrator::Fast => {
-                    fast::render_tiles(&fast_scene, &mut tiles, options.seed, &control.cancel)
+            let (seed, cancel) = (options.seed, &control.cancel);
+            let complete = match &engine {
+                Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
+                Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                    reference::trace_with(scene, options.estimators, ray, random)
+                }),
+                Engine::Spectral(spectral_scene) => {
+                    trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                        spectral_scene.trace(ray, random)
+                    })
                 }
-                Integrator::Reference => trace_tiles(scene, &mut tiles, options.seed, &control.cancel),
             };
             if !complete {
                 return;
@@ -86,6 +96,23 @@ pub fn render_pass(
         work();
     });
     if control.cancel.load(Ordering::Relaxed) { Outcome::Cancelled } else { Outcome::Complete }
+}
+
+/// The integrator that renders a scene, and the scene as it wants it.
+enum Engine<'a> {
+    Fast(FastScene<'a>),
+    Reference,
+    Spectral(SpectralScene<'a>),
+}
+
+impl<'a> Engine<'a> {
+    fn new(scene: &'a Scene, integrator: Integrator) -> Self {
+        match integrator {
+            _ if scene.is_chromatic() => Self::Spectral(SpectralScene::new(scene, Channels::Rgb)),
+            Integrator::Fast => Self::Fast(FastScene::new(scene)),
+            Integrator::Reference => Self::Reference,
+        }
+    }
 }
 
 /// A thread that panicked holding the lock has ended the render anyway.
@@ -123,8 +150,14 @@ fn sample_count(tile: &FilmTile) -> u64 {
     u64::from(rect.width) * u64::from(rect.height) * (samples.end - samples.start)
 }
 
-/// The reference integrator over some tiles; `false` if cancelled.
-fn trace_tiles(scene: &Scene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
+/// Some tiles, one path after the other, each by `trace`; `false` if cancelled.
+fn trace_tiles(
+    scene: &Scene,
+    tiles: &mut [FilmTile],
+    seed: u64,
+    cancel: &AtomicBool,
+    trace: impl Fn(Ray, &mut Random) -> Sample,
+) -> bool {
     for tile in tiles {
         let rect = tile.rect();
         for y in rect.y..rect.y + rect.height {
@@ -138,7 +171,7 @@ fn trace_tiles(scene: &Scene, tiles: &mut [FilmTile], seed: u64, cancel: &Atomic
                     let film_u = [random.f64(), random.f64()];
                     let lens_u = [random.f64(), random.f64()];
                     let ray = scene.camera.ray([x, y], film_u, lens_u);
-                    tile.add(x, y, &reference::trace(scene, ray, &mut random));
+                    tile.add(x, y, &trace(ray, &mut random));
                 }
             }
         }

@@ -126,7 +126,8 @@ impl Clock {
     }
 }
 
-fn parse_error(text: &str) -> Result<f64, String> {
+/// A share, such as 1% or 0.01.
+pub fn parse_error(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix('%') {
         Some(percent) => (percent.trim(), 0.01),
         None => (text, 1.0),
@@ -135,7 +136,8 @@ fn parse_error(text: &str) -> Result<f64, String> {
     error.filter(|e| e.is_finite() && *e > 0.0).ok_or("write a share above 0, such as 1% or 0.01".into())
 }
 
-fn parse_time(text: &str) -> Result<Duration, String> {
+/// A time, such as 90s, 10min or 2h.
+pub fn parse_time(text: &str) -> Result<Duration, String> {
     let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let (number, unit) = text.split_at(split);
     let seconds = match unit {

@@ -9,6 +9,7 @@ use tyndall_optics::Spectrum;
 use tyndall_optics::albedo_inversion::albedo_of_reflectance;
 use tyndall_optics::presets::{MEASURED_MEDIA, MeasuredMedium, measured_medium};
 
+use super::PhaseDescription;
 use super::spectrum::{KeyProblem, SpectrumDescription, fraction, positive};
 use super::units::unit_in_metres;
 use crate::SpectralCoefficients;
@@ -55,21 +56,6 @@ pub struct MediumDescription {
     /// `emission_grid` if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emission_per_length: Option<SpectrumDescription>,
-}
-
-/// How scattered light is spread over directions.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum PhaseDescription {
-    /// Equally in all directions.
-    #[default]
-    Isotropic,
-    /// Henyey and Greenstein 1941.
-    Hg {
-        /// Mean cosine of the scattering angle; above 0 is forward.
-        #[schemars(extend("exclusiveMinimum" = -1, "exclusiveMaximum" = 1))]
-        g: f64,
-    },
 }
 
 /// The ways to give coefficients, for messages.

@@ -5,11 +5,14 @@
 //! linear Rec. 709.
 
 mod automatic;
+mod call;
 mod camera;
 mod emission;
 mod film;
 mod lights;
 mod medium;
+mod phase;
+pub mod phase_spec;
 mod rgb;
 mod rules;
 mod spectrum;
@@ -25,7 +28,8 @@ pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
     PointLightDescription, SkyDescription, SunLightDescription,
 };
-pub use medium::{MediumDescription, PhaseDescription};
+pub use medium::MediumDescription;
+pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
 pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::{
-    CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, SceneDescription,
-    SkyDescription, SpectrumDescription, TransformDescription, VolumeDescription, VolumeSource,
+    CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, PhaseDescription,
+    SceneDescription, SkyDescription, SpectrumDescription, TransformDescription, VolumeDescription,
+    VolumeSource,
 };
 
 /// A key whose value contradicts the rest of the scene.
@@ -130,6 +131,9 @@ fn medium_rules(found: &mut Findings, medium: &MediumDescription, unit: &str) {
         if let Some(emission) = emission {
             light_spectrum(found, key, emission);
         }
+    }
+    if let Some((key, message)) = medium.phase.as_ref().and_then(PhaseDescription::violation) {
+        found.within("phase", |found| found.report(key, message));
     }
 }
 

@@ -12,10 +12,10 @@ use crate::error::Problem;
 /// Greatest magnitude of any number: products of a few such numbers stay finite in double precision.
 const GREATEST: f64 = 1e30;
 
-/// Everything in `node` that the schema does not allow.
-pub(super) fn problems(node: &Node, schema: &Schema) -> Vec<Problem> {
+/// Everything in `node`, which messages call `name`, that the schema does not allow.
+pub(crate) fn problems(node: &Node, name: &str, schema: &Schema) -> Vec<Problem> {
     let mut check = Check { problems: Vec::new() };
-    check.value(node, "the scene", schema);
+    check.value(node, name, schema);
     check.problems
 }
 

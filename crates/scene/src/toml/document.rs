@@ -97,7 +97,7 @@ impl SceneDocument {
 
     /// The description, if the document is a sound scene; else everything that is wrong with it.
     pub fn description(&self) -> Result<SceneDescription, SceneError> {
-        let mut problems = conformance::problems(&self.root, &json_schema());
+        let mut problems = conformance::problems(&self.root, "the scene", &json_schema());
         problems.sort_by_key(|problem| problem.position);
         SceneError::unless_empty(problems)?;
 

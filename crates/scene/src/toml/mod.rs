@@ -4,11 +4,11 @@
 //! it ([`document`]) → it is held against the JSON schema ([`conformance`]), all problems at once → serde
 //! makes the description → its rules are checked. [`print`] is the way back.
 
-mod conformance;
+pub(crate) mod conformance;
 mod document;
 mod print;
-mod schema;
-mod tree;
+pub(crate) mod schema;
+pub(crate) mod tree;
 
 pub use document::SceneDocument;
 pub use schema::json_schema;

@@ -3,6 +3,7 @@
 //! It serves editors (completion and checks while typing) and this crate alike: a file is held against it
 //! before serde sees the values.
 
+use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
@@ -10,8 +11,13 @@ use crate::SceneDescription;
 
 /// The JSON schema (draft 2020-12) of scene files.
 pub fn json_schema() -> Value {
+    schema_of::<SceneDescription>()
+}
+
+/// The schema of a part of scene files.
+pub(crate) fn schema_of<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
-    let mut schema = settings.into_generator().into_root_schema_for::<SceneDescription>().to_value();
+    let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
     refine(&mut schema);
     schema
 }

@@ -1,4 +1,4 @@
-//! TOML values that know where they stand, in the scene file or in a `--set` option.
+//! TOML values that know where they stand, in the scene file or in an option.
 
 use std::ops::Range;
 
@@ -8,15 +8,15 @@ use crate::error::{Problem, SceneText};
 
 /// Bytes of a text.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
-    pub(super) text: SceneText,
-    /// Whether the text is a `--set` option, which is shown whole, and not the scene file.
-    pub(super) is_option: bool,
-    pub(super) span: Range<usize>,
+pub(crate) struct Place {
+    pub(crate) text: SceneText,
+    /// Whether the text is an option, such as `--set`'s, which is shown whole, and not the scene file.
+    pub(crate) is_option: bool,
+    pub(crate) span: Range<usize>,
 }
 
 impl Place {
-    pub(super) fn problem(&self, message: impl Into<String>) -> Problem {
+    pub(crate) fn problem(&self, message: impl Into<String>) -> Problem {
         if self.is_option {
             Problem::option(self.text.name(), message)
         } else {
@@ -31,14 +31,14 @@ impl Place {
 
 /// A value and where it stands.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
-    pub(super) value: Value,
-    pub(super) place: Place,
+pub(crate) struct Node {
+    pub(crate) value: Value,
+    pub(crate) place: Place,
 }
 
 /// A TOML value.
 #[derive(Debug, Clone)]
-pub(super) enum Value {
+pub(crate) enum Value {
     String(String),
     Integer(i64),
     Float(f64),
@@ -50,20 +50,20 @@ pub(super) enum Value {
 
 /// A key of a table with its value.
 #[derive(Debug, Clone)]
-pub(super) struct Entry {
-    pub(super) key: String,
-    pub(super) key_place: Place,
-    pub(super) node: Node,
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) key_place: Place,
+    pub(crate) node: Node,
 }
 
 impl Node {
     /// The tree of a whole document that stands at `place`.
-    pub(super) fn from_document(table: DeTable<'_>, place: &Place, problems: &mut Vec<Problem>) -> Self {
+    pub(crate) fn from_document(table: DeTable<'_>, place: &Place, problems: &mut Vec<Problem>) -> Self {
         Self { value: entries(table, place, problems), place: place.elsewhere(0..0) }
     }
 
     /// The tree of a single value.
-    pub(super) fn from_value(value: DeValue<'_>, place: Place, problems: &mut Vec<Problem>) -> Self {
+    pub(crate) fn from_value(value: DeValue<'_>, place: Place, problems: &mut Vec<Problem>) -> Self {
         let value = match value {
             DeValue::String(text) => Value::String(text.into_owned()),
             DeValue::Boolean(flag) => Value::Boolean(flag),
@@ -97,7 +97,7 @@ impl Node {
     }
 
     /// The value without its places.
-    pub(super) fn to_toml(&self) -> toml::Value {
+    pub(crate) fn to_toml(&self) -> toml::Value {
         match &self.value {
             Value::String(text) => toml::Value::String(text.clone()),
             Value::Integer(integer) => toml::Value::Integer(*integer),
@@ -113,7 +113,7 @@ impl Node {
     }
 
     /// Where `path` stands, or the nearest table above it that is there.
-    pub(super) fn place_of(&self, path: &[String]) -> &Place {
+    pub(crate) fn place_of(&self, path: &[String]) -> &Place {
         let Some((key, rest)) = path.split_first() else { return &self.place };
         match &self.value {
             Value::Table(entries) => match entries.iter().find(|entry| entry.key == *key) {

@@ -1,14 +1,22 @@
-//! Distance sampling in closed form: the t at which the optical thickness is −ln(1 − ξ). In a homogeneous medium that
-//! is t = −ln(1 − ξ)/μt; an exponential atmosphere has an inverse too.
+//! Distance sampling in closed form: t at which τ(t) = −ln(1 − ξ); in a homogeneous medium t = −ln(1 − ξ)/μt.
 //!
 //! Source: Novák, Georgiev, Hanika & Jarosz 2018, "Monte Carlo methods for volumetric light transport simulation",
-//! section 3.1. Unbiased; no lookups.
+//! section 3.1. Unbiased, analog. No lookups but one or two for each voxel of a grid that is not interpolated.
 
 use tyndall_lanes::Random;
-use tyndall_scene::{Ray, Volume};
 
-pub(super) fn sample(volume: &Volume, local: &Ray, end: f64, random: &mut Random) -> Option<f64> {
-    let (enter, leave) = volume.interval(local, end)?;
-    let t = volume.distance_of_integral(local, enter, random.exponential_f64() / volume.medium.mu_t);
-    (t < leave).then_some(t)
+use super::Flight;
+use crate::along_ray::{AlongRay, Lookups};
+use crate::properties::{MajorantUse, Need, Properties};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "closed-form",
+    unbiased: true,
+    majorant: MajorantUse::None,
+    needs: &[Need::ClosedForm],
+    source: "inversion of Beer's law",
+};
+
+pub(super) fn sample(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> Flight {
+    Flight::analog(ray.distance_at(random.exponential_f64(), lookups))
 }

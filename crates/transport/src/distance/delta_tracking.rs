@@ -4,31 +4,34 @@
 //! exp(−μ̄ t); one is real with probability μt/μ̄, otherwise flight goes on. Here the majorant is that of the grid's
 //! cell, changed from cell to cell, which the exponential's lack of memory allows.
 //!
-//! Source: Woodcock, Murphy, Hemmings & Longworth 1965; Novák et al. 2018, section 3.2. Unbiased. Expected lookups:
+//! Source: Woodcock, Murphy, Hemmings & Longworth 1965; Novák et al. 2018, section 3.2. Unbiased, analog. Expected lookups:
 //! ∫ μ̄ along the flight.
 
 use std::ops::ControlFlow;
-use tyndall_lanes::Random;
-use tyndall_scene::Ray;
-use tyndall_volumes::BrickGrid;
 
-pub(super) fn sample(grid: &BrickGrid, mu_t: f64, local: &Ray, end: f64, random: &mut Random) -> Option<f64> {
-    let flight = grid.segments(local.origin, local.direction, (0.0, end), |segment| {
-        let majorant = mu_t * f64::from(segment.bounds.max);
-        if majorant <= 0.0 {
-            return ControlFlow::Continue(());
-        }
-        let mut t = segment.start;
-        loop {
-            t += random.exponential_f64() / majorant;
-            if t >= segment.end {
-                return ControlFlow::Continue(());
-            }
-            let extinction = mu_t * grid.value(local.at(t));
-            if random.f64() * majorant < extinction {
-                return ControlFlow::Break(t);
-            }
-        }
-    });
-    flight.break_value()
+use tyndall_lanes::Random;
+
+use super::Flight;
+use crate::along_ray::{AlongRay, Lookups, tentative_collisions};
+use crate::properties::{MajorantUse, Properties};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "delta-tracking",
+    unbiased: true,
+    majorant: MajorantUse::Bounding,
+    needs: &[],
+    source: "Woodcock et al. 1965",
+};
+
+pub(super) fn sample(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> Flight {
+    let flight = tentative_collisions(
+        ray,
+        |piece| piece.majorant,
+        random,
+        |at, random| {
+            let mu_t = ray.mu_t(at.t, lookups);
+            if random.f64() * at.rate < mu_t { ControlFlow::Break(at.t) } else { ControlFlow::Continue(()) }
+        },
+    );
+    Flight::analog(flight.break_value())
 }

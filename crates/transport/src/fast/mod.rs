@@ -221,11 +221,12 @@ impl<'a> Engine<'a> {
         for (number, volume) in self.scene.volumes.iter().enumerate().skip(first) {
             let end = path.nearest.map_or(path.ray_end, |(_, distance)| distance);
             let end = if shadow { path.ray_end } else { end };
+            let mu_t = volume.mu_t * volume.phase.projected_area(direction);
             match &volume.kind {
                 Kind::ClosedForm(closed) => {
                     let local = closed.local_ray(&self.scene.world_ray(path.position, direction));
                     let Some((enter, leave)) = closed.interval(&local, f64::from(end)) else { continue };
-                    let mu_t = f64::from(volume.mu_t);
+                    let mu_t = f64::from(mu_t);
                     if shadow {
                         let integral = closed.density_integral(&local, (enter, leave)).unwrap_or(0.0);
                         self.rays.transmittance[slot] *= tyndall_lanes::exp((-mu_t * integral) as f32);
@@ -245,7 +246,7 @@ impl<'a> Engine<'a> {
                     let b = (grid.max - origin) * inverse;
                     let enter = a.min(b).max_element().max(0.0);
                     let leave = a.max(b).min_element().min(end);
-                    if enter >= leave || volume.mu_t <= 0.0 {
+                    if enter >= leave || mu_t <= 0.0 {
                         continue;
                     }
                     let rays = &mut *self.rays;
@@ -258,7 +259,7 @@ impl<'a> Engine<'a> {
                     rays.t[slot] = enter;
                     rays.end[slot] = leave;
                     rays.nudge[slot] = nudge / direction.abs().max_element();
-                    rays.mu_t[slot] = volume.mu_t;
+                    rays.mu_t[slot] = mu_t;
                     rays.volume[slot] = number as u32;
                     rays.tau[slot] = rays.random[slot].exponential();
                     return true;
@@ -313,7 +314,7 @@ impl<'a> Engine<'a> {
 
         let before = path.direction;
         path.direction = volume.phase.sample(before, random.f32x2());
-        path.phase_pdf = volume.phase.value(before.dot(path.direction));
+        path.phase_pdf = volume.phase.value(before, path.direction);
         if traced { Next::LookAtLight } else { Next::Fly }
     }
 
@@ -365,13 +366,13 @@ impl<'a> Engine<'a> {
 /// Draws a light and what it would bring by the next event; `false` if there is nothing to trace or roulette, played
 /// on the contribution before the shadow ray is paid for, ended it.
 #[inline(always)]
-fn choose_direct(scene: &FastScene, path: &mut Path, phase: volume::Phase, random: &mut Random) -> bool {
+fn choose_direct(scene: &FastScene, path: &mut Path, phase: volume::Phase<'_>, random: &mut Random) -> bool {
     let Some((light, probability)) = scene.scene.choose_light(random.f64()) else {
         return false;
     };
     let sample = light.sample(scene.to_world(path.position), [random.f64(), random.f64()]);
     let toward = sample.toward.as_vec3();
-    let phase_value = phase.value(path.direction.dot(toward));
+    let phase_value = phase.value(path.direction, toward);
     let light_pdf = (probability * sample.pdf) as f32;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + phase_value) };
     let unscattered = sample.radiance_over_pdf.as_vec3() / probability as f32;

@@ -19,7 +19,7 @@ pub(crate) struct FastVolume<'a> {
     pub kind: Kind<'a>,
     pub mu_t: f32,
     pub albedo: Vec3,
-    pub phase: Phase,
+    pub phase: Phase<'a>,
     /// (1 − albedo)·Le: what a collision adds.
     pub emission: Vec3,
     /// The volume, if albedo or emission have to be looked up at each collision.
@@ -112,15 +112,16 @@ impl<'a> FastVolume<'a> {
     }
 }
 
-/// A phase function in f32; [`PhaseFunction`] is its oracle.
+/// A phase function in f32, of which [`PhaseFunction`] is the oracle; the less common ones are left to it.
 #[derive(Clone, Copy)]
-pub(crate) enum Phase {
+pub(crate) enum Phase<'a> {
     Isotropic,
     HenyeyGreenstein { g: f32 },
+    Other(&'a PhaseFunction),
 }
 
-impl Phase {
-    fn new(phase: &PhaseFunction) -> Phase {
+impl<'a> Phase<'a> {
+    fn new(phase: &'a PhaseFunction) -> Phase<'a> {
         match *phase {
             PhaseFunction::HenyeyGreenstein { g } if g.abs() > 1e-3 => {
                 Phase::HenyeyGreenstein { g: g as f32 }
@@ -128,19 +129,23 @@ impl Phase {
             // Below |g| = 1e-3 the f32 inverse loses its digits; to that order the phase function is isotropic to
             // within 0.3 %, and a picture, which g enters through 1 − g, to within 0.1 %.
             PhaseFunction::HenyeyGreenstein { .. } | PhaseFunction::Isotropic => Phase::Isotropic,
+            _ => Phase::Other(phase),
         }
     }
 
+    /// Value in 1/sr between unit vectors of travel.
     #[inline(always)]
-    pub fn value(self, cos_theta: f32) -> f32 {
+    pub fn value(self, before: Vec3, after: Vec3) -> f32 {
         const INVERSE_SPHERE: f32 = 0.25 * std::f32::consts::FRAC_1_PI;
         match self {
             Phase::Isotropic => INVERSE_SPHERE,
             Phase::HenyeyGreenstein { g } => {
+                let cos_theta = before.dot(after);
                 // (1 − g)² + 2g(1 − cos) keeps its digits at the forward peak.
                 let denominator = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cos_theta);
                 INVERSE_SPHERE * (1.0 - g * g) / (denominator * denominator.sqrt())
             }
+            Phase::Other(phase) => other_value(phase, before, after),
         }
     }
 
@@ -152,6 +157,7 @@ impl Phase {
                 let ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * u[0]);
                 ((1.0 + g * g - ratio * ratio) / (2.0 * g)).clamp(-1.0, 1.0)
             }
+            Phase::Other(phase) => return other_sample(phase, before, u),
         };
         let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
         let (sin_phi, cos_phi) = tyndall_lanes::sin_cos_turns(u[1]);
@@ -160,6 +166,28 @@ impl Phase {
         // One Newton step of the inverse square root about 1 keeps thousands of turns at unit length.
         after * (1.5 - 0.5 * after.length_squared())
     }
+
+    /// What the extinction is multiplied by along `direction`.
+    #[inline(always)]
+    pub fn projected_area(self, direction: Vec3) -> f32 {
+        match self {
+            Phase::Isotropic | Phase::HenyeyGreenstein { .. } => 1.0,
+            Phase::Other(phase) => phase.projected_area(direction.as_dvec3()) as f32,
+        }
+    }
+}
+
+// Out of line, to keep them out of the way of the common kinds. The directions are made unit vectors to the last digit
+// of f64, as peaks may be sharper than f32 can tell.
+
+#[inline(never)]
+fn other_value(phase: &PhaseFunction, before: Vec3, after: Vec3) -> f32 {
+    phase.value(before.as_dvec3().normalize(), after.as_dvec3().normalize()) as f32
+}
+
+#[inline(never)]
+fn other_sample(phase: &PhaseFunction, before: Vec3, u: [f32; 2]) -> Vec3 {
+    phase.sample(before.as_dvec3().normalize(), u.map(f64::from)).as_vec3()
 }
 
 #[cfg(test)]
@@ -179,7 +207,11 @@ mod tests {
             for i in 0..=1000 {
                 let cos = -1.0 + i as f32 * 0.002;
                 let truth = phase.value_at_cosine(f64::from(cos));
-                assert!((f64::from(fast.value(cos)) / truth - 1.0).abs() < 2e-5, "{phase:?} at {cos}");
+                let after = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+                assert!(
+                    (f64::from(fast.value(Vec3::Z, after)) / truth - 1.0).abs() < 2e-5,
+                    "{phase:?} at {cos}"
+                );
             }
             for i in 0..1000 {
                 let u = (i as f32 + 0.5) / 1000.0;

@@ -1,11 +1,19 @@
-//! Transmittance in closed form: T = exp(−τ), with τ = μt·length in a homogeneous medium (Beer's law) and a difference
-//! of exponentials in an exponential atmosphere.
+//! Transmittance in closed form: T = exp(−τ) (Bouguer 1729, Beer 1852), with τ = μt·length in a homogeneous medium and a
+//! formula for τ in others.
 //!
-//! Exact; no lookups.
+//! Exact; no variance. No lookups but one for each voxel of a grid that is not interpolated.
 
-use tyndall_scene::{Ray, Volume};
+use crate::along_ray::{AlongRay, Lookups};
+use crate::properties::{MajorantUse, Need, Properties};
 
-pub(super) fn transmittance(volume: &Volume, local: &Ray, end: f64) -> f64 {
-    let integral = volume.interval(local, end).and_then(|within| volume.density_integral(local, within));
-    integral.map_or(1.0, |integral| (-volume.medium.mu_t * integral).exp())
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "closed-form",
+    unbiased: true,
+    majorant: MajorantUse::None,
+    needs: &[Need::ClosedForm],
+    source: "Beer 1852",
+};
+
+pub(super) fn transmittance(ray: &AlongRay, lookups: &mut Lookups) -> f64 {
+    (-ray.thickness(f64::INFINITY, lookups)).exp()
 }

@@ -23,7 +23,7 @@ const REGION: u32 = 8;
 const BATCHES: u64 = 40;
 const SAMPLES: u64 = 6;
 
-const HEAD: &str = "camera = { position = [0.3, 0.2, 4], target = [0, 0, 0], vertical_fov = 34 }
+pub const HEAD: &str = "camera = { position = [0.3, 0.2, 4], target = [0, 0, 0], vertical_fov = 34 }
     film = { resolution = [24, 24] }\n";
 
 /// Means over each region of each quantity that a film holds, in a fixed order, with their names.
@@ -59,9 +59,12 @@ fn region_means(film: &Film) -> Vec<(String, f64)> {
 }
 
 /// For each region and quantity its name and its values in all batches.
-fn batches(scene: &Scene, integrator: Integrator, seed: u64) -> Vec<(String, Vec<f64>)> {
-    let mut all: Vec<(String, Vec<f64>)> = Vec::new();
-    for batch in 0..BATCHES {
+pub type Batches = Vec<(String, Vec<f64>)>;
+
+/// The values in `count` batches.
+pub fn batches(scene: &Scene, integrator: Integrator, seed: u64, count: u64) -> Batches {
+    let mut all: Batches = Vec::new();
+    for batch in 0..count {
         let film = render(scene, integrator, seed, batch * SAMPLES..(batch + 1) * SAMPLES);
         let means = region_means(&film);
         if all.is_empty() {
@@ -75,12 +78,17 @@ fn batches(scene: &Scene, integrator: Integrator, seed: u64) -> Vec<(String, Vec
 }
 
 /// Fails if any region of any quantity differs significantly.
-fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integrator)) {
-    let (a, b) = (batches(first.0, first.1, 31), batches(second.0, second.1, 32));
+pub fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integrator)) {
+    let batches = [batches(first.0, first.1, 31, BATCHES), batches(second.0, second.1, 32, BATCHES)];
+    assert_same_batches(name, [first.1, second.1], &batches);
+}
+
+/// Fails if any region of any quantity differs significantly between the batches of two integrators.
+pub fn assert_same_batches(name: &str, integrators: [Integrator; 2], [a, b]: &[Batches; 2]) {
     let limit = two_sided_quantile(1e-3 / a.len() as f64);
     let mut lit = 0;
     let mut worst: f64 = 0.0;
-    for ((quantity, a), (_, b)) in a.iter().zip(&b) {
+    for ((quantity, a), (_, b)) in a.iter().zip(b) {
         let ((mean_a, error_a), (mean_b, error_b)) = (mean_and_error(a), mean_and_error(b));
         lit += usize::from(mean_a > 0.0 && error_a > 0.0);
         let (va, vb) = (error_a * error_a, error_b * error_b);
@@ -90,14 +98,14 @@ fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Integra
         if difference == 0.0 {
             continue;
         }
-        let degrees = (va + vb).powi(2) / (va * va + vb * vb).max(f64::MIN_POSITIVE) * (BATCHES - 1) as f64;
+        let degrees = (va + vb).powi(2) / (va * va + vb * vb).max(f64::MIN_POSITIVE) * (a.len() - 1) as f64;
         let z = normal_from_student(difference / error, degrees.max(1.0));
         worst = worst.max(z.abs());
         assert!(
             z.abs() < limit,
             "{name}: {quantity}: {:?} has {mean_a} +- {error_a}, {:?} {mean_b} +- {error_b}, z = {z}",
-            first.1,
-            second.1
+            integrators[0],
+            integrators[1]
         );
     }
     eprintln!("{name}: {lit} of {} quantities are lit, greatest |z| {worst:.2} below {limit:.2}", a.len());

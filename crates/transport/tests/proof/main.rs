@@ -4,6 +4,7 @@
 //! would fail by chance for other seeds is stated with each. Where both integrators can be asked, both are.
 
 mod agreement;
+mod chromatic;
 mod estimators;
 mod rendering;
 mod same_bits;

@@ -5,15 +5,20 @@ use std::ops::Range;
 use tyndall_film::{Film, Layers};
 use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
-use tyndall_transport::{Control, Outcome, RenderOptions, render_pass};
+use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 pub const BOTH: [Integrator; 2] = [Integrator::Reference, Integrator::Fast];
+
+/// One thread and the default estimators.
+pub fn options(integrator: Integrator, seed: u64) -> RenderOptions {
+    RenderOptions { integrator, seed, threads: 1, estimators: Estimators::default() }
+}
 
 /// A film of `samples` of every pixel, rendered on one thread; no sample was refused.
 pub fn render(scene: &Scene, integrator: Integrator, seed: u64, samples: Range<u64>) -> Film {
     let [width, height] = scene.resolution;
     let mut film = Film::new(width, height, Layers::ALL).expect("test pictures are small");
-    add_pass(scene, &mut film, samples, RenderOptions { integrator, seed, threads: 1 });
+    add_pass(scene, &mut film, samples, options(integrator, seed));
     assert_eq!(film.rejected(), 0, "{integrator:?} made samples that are no numbers");
     film
 }

@@ -4,7 +4,7 @@ use tyndall_film::{Film, Layers};
 use tyndall_scene::Scene;
 use tyndall_transport::RenderOptions;
 
-use crate::rendering::{BOTH, add_pass};
+use crate::rendering::{BOTH, add_pass, options};
 use crate::scenes::scene;
 
 /// Two overlapping volumes, a grid and a shape, under lights of two kinds; six blocks of tiles, some of them cut.
@@ -40,7 +40,7 @@ fn threads_and_passes_change_no_bit() {
     for integrator in BOTH {
         let film = |threads, passes: &[[u64; 2]]| {
             let mut film = Film::new(150, 90, Layers::ALL).expect("a small picture");
-            let options = RenderOptions { integrator, seed: 7, threads };
+            let options = RenderOptions { threads, ..options(integrator, 7) };
             for &[start, end] in passes {
                 add_pass(&scene, &mut film, start..end, options);
             }

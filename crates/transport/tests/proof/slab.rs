@@ -22,15 +22,15 @@ const PATHS: u64 = 4096;
 /// Fewer paths than this that bring something, on average, make no normal law.
 const FEWEST_FOR_NORMAL_LAW: f64 = 300.0;
 
-struct Row {
-    albedo: f64,
-    tau: f64,
-    g: f64,
+pub struct Row {
+    pub albedo: f64,
+    pub tau: f64,
+    pub g: f64,
     /// Reflectance and transmittance for normal incidence, for 60 degrees and for diffuse light.
-    truth: [[f64; 2]; 3],
+    pub truth: [[f64; 2]; 3],
 }
 
-fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<Row> {
     let table: serde_json::Value =
         serde_json::from_str(include_str!("../truth/slab_matched.json")).expect("the table is JSON");
     let rows = table["rows"].as_array().expect("the table has rows");

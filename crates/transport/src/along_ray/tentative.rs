@@ -1,0 +1,47 @@
+//! Tentative collisions: the walk that all null-collision methods share.
+//!
+//! Along the ray the points of a Poisson process of a rate μ̄ that is constant over each piece. The exponential law has no
+//! memory, so the walk starts afresh at the border of a piece. Expected number: ∫ μ̄ up to where the walk is broken off.
+
+use std::ops::ControlFlow;
+
+use tyndall_lanes::Random;
+
+use super::{AlongRay, Piece};
+
+/// A point of the process.
+pub(crate) struct Tentative<'p> {
+    /// Where it is.
+    pub t: f64,
+    /// The rate there, 1/length.
+    pub rate: f64,
+    /// ∫ of the rate from the start of the ray to here.
+    pub depth: f64,
+    /// The piece in which it is.
+    pub piece: &'p Piece,
+}
+
+/// Visits the tentative collisions under the rate `rate` of each piece, until `visit` breaks.
+pub(crate) fn tentative_collisions<B>(
+    ray: &AlongRay,
+    rate: impl Fn(&Piece) -> f64,
+    random: &mut Random,
+    mut visit: impl FnMut(Tentative, &mut Random) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    let mut depth = 0.0;
+    ray.pieces(|piece| {
+        let rate = rate(piece);
+        if rate <= 0.0 {
+            return ControlFlow::Continue(());
+        }
+        let mut t = piece.start;
+        loop {
+            t += random.exponential_f64() / rate;
+            if t >= piece.end {
+                depth += rate * (piece.end - piece.start);
+                return ControlFlow::Continue(());
+            }
+            visit(Tentative { t, rate, depth: depth + rate * (t - piece.start), piece }, random)?;
+        }
+    })
+}

@@ -1,0 +1,119 @@
+//! Sends photons, shared out among threads, until there are enough of them.
+//!
+//! Photon i has random numbers of its own, those of (seed, stream, i), and tallies add exactly, so that a result
+//! depends on the seed and the number of photons alone.
+
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use tyndall_lanes::Random;
+
+use super::tally::{Estimate, MAX_PHOTONS, Scores, Tallies};
+
+/// Something that photons can be sent through.
+pub trait Walk: Sync {
+    /// Number of tallies.
+    fn tallies(&self) -> usize;
+
+    /// One photon, from its birth to its end.
+    fn walk(&self, random: &mut Random, scores: &mut Scores);
+
+    /// The results whose relative error a run may be stopped by.
+    fn results(&self, tallies: &Tallies) -> Vec<Estimate>;
+}
+
+/// When to stop; whichever comes first.
+#[derive(Debug, Clone, Copy)]
+pub struct Goal {
+    /// Number of photons at most; 2^31 at most.
+    pub samples: u64,
+    /// Greatest relative standard error of any result that is to be reached. Results below 10⁻⁴ count as 10⁻⁴.
+    pub error: Option<f64>,
+    /// Time after which no further pass is begun.
+    pub time: Option<Duration>,
+}
+
+/// How photons are sent.
+#[derive(Debug, Clone, Copy)]
+pub struct WalkOptions {
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Which of the seed's families of random numbers: meters of one scene are independent with different ones.
+    pub stream: u64,
+    /// Number of threads, at least 1.
+    pub threads: usize,
+    /// When to stop.
+    pub goal: Goal,
+}
+
+/// Photons that a thread takes at a time.
+const CHUNK: u64 = 256;
+
+/// Photons of the first pass. The error of fewer is not to be relied upon.
+const FIRST_PASS: u64 = 1 << 13;
+
+/// What counts for the relative error of a result that is smaller.
+const LEAST_RESULT: f64 = 1e-4;
+
+/// Sends photons until the goal is reached, or until `cancel` is set: then the photons of the pass under way are given
+/// up.
+pub fn run(walk: &impl Walk, options: &WalkOptions, cancel: &AtomicBool) -> Tallies {
+    let WalkOptions { goal, .. } = options;
+    let start = Instant::now();
+    let limit = goal.samples.min(MAX_PHOTONS);
+    let mut tallies = Tallies::new(walk.tallies());
+    while tallies.photons() < limit {
+        let done = tallies.photons();
+        let late = goal.time.is_some_and(|time| start.elapsed() >= time);
+        if done > 0 && (late || is_reached(goal, &walk.results(&tallies), done)) {
+            break;
+        }
+        // Passes grow with what there is, so that goals are met to within a part of the work.
+        let pass = done..limit.min(done + (done / 4).max(FIRST_PASS));
+        match send(walk, pass, options, cancel) {
+            Some(sent) => tallies.merge(&sent),
+            None => break,
+        }
+    }
+    tallies
+}
+
+fn is_reached(goal: &Goal, results: &[Estimate], photons: u64) -> bool {
+    let Some(goal) = goal.error else { return false };
+    results.iter().all(|result| {
+        // What no photon has brought anything to yet may still be as much as 1/n.
+        let error = result.standard_error.max(1.0 / photons as f64);
+        error <= goal * result.mean.abs().max(LEAST_RESULT)
+    })
+}
+
+/// The photons with the numbers `pass`; `None` if cancelled.
+fn send(walk: &impl Walk, pass: Range<u64>, options: &WalkOptions, cancel: &AtomicBool) -> Option<Tallies> {
+    let next = AtomicU64::new(pass.start);
+    let sum = Mutex::new(Tallies::new(walk.tallies()));
+    let work = || {
+        let mut tallies = Tallies::new(walk.tallies());
+        let mut scores = Scores::new(walk.tallies());
+        loop {
+            let first = next.fetch_add(CHUNK, Ordering::Relaxed);
+            if first >= pass.end || cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            for photon in first..pass.end.min(first + CHUNK) {
+                walk.walk(&mut Random::new(options.seed, options.stream, photon), &mut scores);
+                tallies.take(&mut scores);
+            }
+        }
+        sum.lock().unwrap_or_else(std::sync::PoisonError::into_inner).merge(&tallies);
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..options.threads.max(1) {
+            scope.spawn(work);
+        }
+        work();
+    });
+    let sum = sum.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    (!cancel.load(Ordering::Relaxed)).then_some(sum)
+}
