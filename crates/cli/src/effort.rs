@@ -12,8 +12,8 @@ pub struct Effort {
     /// Number of photons [default: 1000000, or as many as --error and --time need]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 31))]
     samples: Option<u32>,
-    /// Stop when the relative standard errors of reflectance and transmittance are below this, such as 0.1%;
-    /// what is below 0.0001 counts as 0.0001
+    /// Stop when the relative standard errors of the results (reflectance and transmittance) are below this, such as
+    /// 0.1%; fractions below 0.0001 count as 0.0001
     #[arg(long, value_name = "REL", value_parser = parse_error)]
     error: Option<f64>,
     /// Stop after this time, such as 90s, 10min, 2h

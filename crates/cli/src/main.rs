@@ -5,6 +5,7 @@ mod diff;
 mod effort;
 mod inspect;
 mod interrupt;
+mod measure;
 mod measured;
 mod merge;
 mod output;
@@ -42,6 +43,7 @@ enum Command {
     Merge(merge::Args),
     Diff(diff::Args),
     Slab(Box<slab::Args>),
+    Measure(measure::Args),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -75,6 +77,7 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
         None => return render::run(render::Args::default_scene()),
         Some(Command::Render(args)) => return render::run(*args),
         Some(Command::Slab(args)) => return slab::run(*args),
+        Some(Command::Measure(args)) => return measure::run(args),
         Some(Command::Inspect(args)) => inspect::run(args)?,
         Some(Command::Convert(args)) => convert::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,

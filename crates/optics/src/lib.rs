@@ -5,11 +5,14 @@
 
 pub mod albedo_inversion;
 pub mod cie;
+pub mod mie;
 pub mod phase_function;
 pub mod planck;
 pub mod presets;
+pub mod refractive_index;
 mod spectrum;
 pub mod uplift;
 
 pub use phase_function::{PhaseFunction, SpectralPhase};
+pub use refractive_index::{Material, RefractiveIndex, RefractiveIndexTable, Substance};
 pub use spectrum::{Spectrum, SpectrumError};

@@ -7,9 +7,9 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, DVec4};
-use tyndall_optics::{PhaseFunction, Spectrum, uplift};
+use tyndall_optics::{PhaseFunction, Spectrum, planck, uplift};
 
-use crate::Medium;
+use crate::{Medium, Volume};
 
 /// What the channels of a path are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +38,20 @@ impl Channels {
     }
 }
 
+/// What the three channels of a picture are.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Observer {
+    /// Linear red, green and blue (Rec. 709), and light is taken to be made of these three.
+    #[default]
+    Rgb,
+    /// Linear red, green and blue of light of all wavelengths, as the CIE 1931 standard observer sees it.
+    SpectralRgb,
+    /// The same light as CIE XYZ.
+    SpectralXyz,
+    /// Radiance at three wavelengths, nm.
+    Bands([f64; 3]),
+}
+
 /// What a medium does to light where its density is 1, in each channel of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelMedium<'a> {
@@ -47,6 +61,8 @@ pub struct ChannelMedium<'a> {
     pub albedo: DVec4,
     /// Emitted radiance Le.
     pub emission: DVec4,
+    /// Radiance added per length, 1/scene unit.
+    pub emission_per_length: DVec4,
     /// The phase functions.
     pub phases: ChannelPhases<'a>,
 }
@@ -58,6 +74,19 @@ pub enum ChannelPhases<'a> {
     Same(&'a PhaseFunction),
     /// One for each.
     Each([Cow<'a, PhaseFunction>; 4]),
+}
+
+impl ChannelMedium<'_> {
+    /// Extinction coefficients for light that travels along the unit vector `direction`, or against it.
+    pub fn mu_t_along(&self, direction: DVec3) -> DVec4 {
+        match &self.phases {
+            ChannelPhases::Same(phase) => self.mu_t * phase.projected_area(direction),
+            ChannelPhases::Each(phases) => {
+                let areas = phases.each_ref().map(|phase| phase.projected_area(direction));
+                self.mu_t * DVec4::from_array(areas)
+            }
+        }
+    }
 }
 
 impl ChannelPhases<'_> {
@@ -97,13 +126,29 @@ impl Medium {
             mu_t: mu_t.extend(0.0),
             albedo: self.albedo.extend(0.0),
             emission: self.emission.extend(0.0),
+            emission_per_length: self.emission_per_length.extend(0.0),
             phases,
         }
     }
 
-    /// Colours become spectra that have them.
+    /// Where only colours are known, they become spectra that have them.
     fn at_wavelengths(&self, wavelengths_nm: [f64; 4]) -> ChannelMedium<'_> {
-        let at = |spectrum: &Spectrum| DVec4::from_array(wavelengths_nm.map(|nm| spectrum.at(nm)));
+        let each = |value: &dyn Fn(f64) -> f64| DVec4::from_array(wavelengths_nm.map(value));
+        if let Some(spectra) = self.spectra.as_deref() {
+            let phases = if spectra.phase.is_grey() {
+                ChannelPhases::Same(&self.phase_function)
+            } else {
+                ChannelPhases::Each(wavelengths_nm.map(|nm| Cow::Owned(spectra.phase.at(nm))))
+            };
+            return ChannelMedium {
+                mu_t: each(&|nm| spectra.coefficients.mu_t(nm)),
+                albedo: each(&|nm| spectra.coefficients.albedo(nm)),
+                emission: each(&|nm| spectra.emission.at(nm)),
+                emission_per_length: each(&|nm| spectra.emission_per_length.at(nm)),
+                phases,
+            };
+        }
+        let at = |spectrum: &Spectrum| each(&|nm| spectrum.at(nm));
         let phases = self.phases(|phase_functions| {
             wavelengths_nm.map(|nm| &phase_functions[uplift::basis(nm).max_position()])
         });
@@ -115,6 +160,7 @@ impl Medium {
             mu_t,
             albedo: at(&Spectrum::Rgb(self.albedo)),
             emission: at(&Spectrum::RgbLight(self.emission)),
+            emission_per_length: at(&Spectrum::RgbLight(self.emission_per_length)),
             phases,
         }
     }
@@ -129,5 +175,32 @@ impl Medium {
             Some(phase_functions) => ChannelPhases::Each(choose(phase_functions).map(Cow::Borrowed)),
             None => ChannelPhases::Same(&self.phase_function),
         }
+    }
+}
+
+impl Volume {
+    /// Albedo and emitted radiance Le at a place, in channels in which the volume's medium is `medium`.
+    pub fn colours_at(&self, position: DVec3, medium: &ChannelMedium, channels: &Channels) -> (DVec4, DVec4) {
+        let Some(fields) = &self.fields else { return (medium.albedo, medium.emission) };
+        let factor = self.albedo_factor(position);
+        let kelvin =
+            fields.temperature.as_ref().map(|temperature| (temperature, temperature.kelvin(position)));
+        let (factor, glow) = match channels {
+            Channels::Rgb => {
+                let glow = kelvin.map(|(field, kelvin)| field.colours.at(kelvin) * field.radiance_scale);
+                (factor.extend(0.0), glow.unwrap_or_default().extend(0.0))
+            }
+            Channels::Wavelengths(wavelengths_nm) => {
+                let glow = |nm| {
+                    kelvin.map_or(0.0, |(field, kelvin)| planck::radiance(nm, kelvin) * field.radiance_scale)
+                };
+                let factor = Spectrum::Rgb(factor);
+                (
+                    DVec4::from_array(wavelengths_nm.map(|nm| factor.at(nm))),
+                    DVec4::from_array(wavelengths_nm.map(glow)),
+                )
+            }
+        };
+        (medium.albedo * factor, (medium.emission + glow) * self.emission_factor(position))
     }
 }

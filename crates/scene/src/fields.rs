@@ -5,9 +5,10 @@
 
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
-use tyndall_optics::planck::{self, BlackbodyColours};
+use tyndall_optics::planck::BlackbodyColours;
 use tyndall_volumes::BrickGrid;
 
+use crate::medium::box_interval;
 use crate::{Ray, Volume};
 
 /// A scalar grid that stands somewhere.
@@ -57,6 +58,14 @@ impl Field {
         }
     }
 
+    /// The distances between which the local ray is inside the grid's domain, cut to [0, `end`].
+    pub fn interval(&self, local: &Ray, end: f64) -> Option<(f64, f64)> {
+        let [min, max] = self.grid.domain();
+        let (enter, leave) = box_interval(local, min, max)?;
+        let (enter, leave) = (enter.max(0.0), leave.min(end));
+        (enter < leave).then_some((enter, leave))
+    }
+
     /// The ray in the coordinates of the grid's filter; distances along it stay those of the world.
     pub fn local_ray(&self, ray: &Ray) -> Ray {
         Ray {
@@ -90,16 +99,6 @@ impl Volume {
             temperature.colours.at(temperature.kelvin(position)) * temperature.radiance_scale
         });
         (self.medium.emission + glow) * factor
-    }
-
-    /// Emitted radiance Le at a place and a wavelength in nm; 0 for media without spectra.
-    pub fn emission_at_wavelength(&self, position: DVec3, wavelength_nm: f64) -> f64 {
-        let even = self.medium.spectra.as_ref().map_or(0.0, |spectra| spectra.emission.at(wavelength_nm));
-        let Some(fields) = &self.fields else { return even };
-        let glow = fields.temperature.as_ref().map_or(0.0, |temperature| {
-            planck::radiance(wavelength_nm, temperature.kelvin(position)) * temperature.radiance_scale
-        });
-        (even + glow) * self.emission_factor(position)
     }
 
     /// What multiplies the emission at a place.

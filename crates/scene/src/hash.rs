@@ -21,10 +21,10 @@ impl fmt::Display for SceneHash {
 
 /// Hash of a scene whose file names are relative to `folder`.
 ///
-/// It covers the camera, the resolution, `max_depth`, the mode of colours, media, volumes, lights and the bytes of the files they
-/// name. It leaves out what does not change the expected picture: where the files are, names, comments, the
-/// unit unless media are given in physical units,
-/// samples per pixel, seed, integrator, exposure and layers.
+/// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
+/// lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
+/// are, names, the unit (unless media are given in physical units), comments, samples per pixel, seed, integrator,
+/// exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     // Only what is given in physical units depends on it.
@@ -33,6 +33,7 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     }
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
+    canonical.meters.clear();
     let RenderDescription { max_depth, mode, .. } = description.render;
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     let media =

@@ -25,7 +25,7 @@ mod toml;
 
 pub use self::build::{BuiltScene, build, choose_density};
 pub use self::camera::{Camera, Ray};
-pub use self::channels::{ChannelMedium, ChannelPhases, Channels};
+pub use self::channels::{ChannelMedium, ChannelPhases, Channels, Observer};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
 pub use self::fields::{Field, Fields, TemperatureField};

@@ -4,7 +4,7 @@ use glam::DVec3;
 use tyndall_optics::Spectrum;
 
 use crate::light::Light;
-use crate::{Camera, Volume};
+use crate::{Camera, Observer, Volume};
 
 /// Everything that transport needs, in world space.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ pub struct Scene {
     pub light_probabilities: Vec<f64>,
     /// Greatest number of scattering events on a path; unlimited if absent.
     pub max_depth: Option<u32>,
+    /// What the channels of the picture are.
+    pub observer: Observer,
 }
 
 impl Scene {
@@ -33,15 +35,25 @@ impl Scene {
         self.volumes.iter().any(|volume| volume.medium.chromatic.is_some())
     }
 
+    /// Whether only the spectral integrator can render the scene: it is chromatic, or light of all wavelengths is wanted.
+    pub fn is_spectral(&self) -> bool {
+        self.is_chromatic() || self.observer != Observer::Rgb
+    }
+
     /// The light for next-event estimation at `u` in [0, 1), and the probability with which it was drawn.
     pub fn choose_light(&self, u: f64) -> Option<(&Light, f64)> {
+        self.choose_light_number(u).map(|(number, probability)| (&self.lights[number], probability))
+    }
+
+    /// The same by the light's number.
+    pub fn choose_light_number(&self, u: f64) -> Option<(usize, f64)> {
         let mut rest = u;
         let mut last = None;
-        for (light, &probability) in self.lights.iter().zip(&self.light_probabilities) {
+        for (number, &probability) in self.light_probabilities.iter().enumerate() {
             if probability <= 0.0 {
                 continue;
             }
-            last = Some((light, probability));
+            last = Some((number, probability));
             if rest < probability {
                 break;
             }
@@ -123,6 +135,7 @@ mod tests {
             lights,
             light_probabilities,
             max_depth: None,
+            observer: Observer::Rgb,
         };
         assert_eq!(scene.choose_light(0.2).map(|(_, p)| p), Some(0.25));
         assert_eq!(scene.choose_light(0.26).map(|(_, p)| p), Some(0.75));

@@ -258,6 +258,36 @@ fn light() -> impl Strategy<Value = LightDescription> {
     ]
 }
 
+fn meter() -> impl Strategy<Value = MeterDescription> {
+    let layer = (of(any::<bool>()), within(0.0, 1.0), of(number()), any::<bool>()).prop_map(
+        |(is_lit, ground_albedo, phi, is_periodic)| {
+            MeterDescription::Layer(LayerMeterDescription {
+                name: None,
+                bottom: -1.0,
+                top: 2.5,
+                direction: is_lit.map(|_| [1.0, -2.0, 0.5]),
+                periodic: is_periodic.then_some([0.0, 0.0, 3.0, 4.0]),
+                columns: is_periodic.then_some([4, 5]),
+                ground_albedo,
+                radiance: phi.map(|phi| [30.0, phi]).into_iter().collect(),
+                channel: is_lit.map(|_| Channel::Green),
+            })
+        },
+    );
+    prop_oneof![
+        layer,
+        (direction(), 1_u32..100).prop_map(|(direction, bins)| {
+            MeterDescription::Body(BodyMeterDescription { name: None, direction, bins, channel: None })
+        }),
+        (vector(), direction()).prop_map(|(position, normal)| {
+            MeterDescription::Irradiance(IrradianceMeterDescription { name: None, position, normal })
+        }),
+        (vector(), direction()).prop_map(|(position, direction)| {
+            MeterDescription::Radiance(RadianceMeterDescription { name: None, position, direction })
+        }),
+    ]
+}
+
 fn scene() -> impl Strategy<Value = SceneDescription> {
     (
         words(),
@@ -266,8 +296,9 @@ fn scene() -> impl Strategy<Value = SceneDescription> {
         of(medium().prop_map(|medium| MediumDescription { emission_per_length: None, ..medium })),
         proptest::collection::vec(volume(), 0..3),
         proptest::collection::vec(light(), 0..3),
+        proptest::collection::vec(meter(), 0..3),
     )
-        .prop_map(|(unit, camera, (film, render), medium, volumes, lights)| SceneDescription {
+        .prop_map(|(unit, camera, (film, render), medium, volumes, lights, meters)| SceneDescription {
             unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
             camera,
             film,
@@ -275,6 +306,7 @@ fn scene() -> impl Strategy<Value = SceneDescription> {
             medium,
             volumes,
             lights,
+            meters,
         })
 }
 

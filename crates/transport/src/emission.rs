@@ -42,6 +42,23 @@ pub fn emitting_length(volume: &Volume, ray: &Ray, end: f64, random: &mut Random
     }
 }
 
+/// Where `volume` may send out light per length along `ray` from 0 to `end`.
+pub(crate) fn emitting_stretch(volume: &Volume, ray: &Ray, end: f64) -> Option<(f64, f64)> {
+    let emission = volume.fields.as_ref().and_then(|fields| fields.emission.as_ref());
+    match emission {
+        Some((field, _)) => field.interval(&field.local_ray(ray), end),
+        None => volume.interval(&volume.local_ray(ray), end),
+    }
+}
+
+/// What multiplies the emission per length of `volume` at a distance inside its [`emitting_stretch`].
+pub(crate) fn emission_factor_along(volume: &Volume, ray: &Ray, t: f64) -> f64 {
+    if volume.fields.as_ref().is_some_and(|fields| fields.emission.is_some()) {
+        return volume.emission_factor(ray.at(t));
+    }
+    volume.density_at(volume.local_ray(ray).at(t))
+}
+
 /// An unbiased estimate of the integral of a grid's values along a ray in the coordinates of its filter.
 fn integral(grid: &BrickGrid, local: &Ray, end: f64, random: &mut Random) -> f64 {
     let mut sum = 0.0;

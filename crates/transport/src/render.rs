@@ -8,17 +8,17 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use tyndall_film::{Film, FilmTile, Sample, TILE_EDGE};
 use tyndall_lanes::Random;
 use tyndall_scene::description::Integrator;
-use tyndall_scene::{Channels, Ray, Scene};
+use tyndall_scene::{Ray, Scene};
 
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::reference;
-use crate::spectral::SpectralScene;
+use crate::spectral::SpectralIntegrator;
 
 /// How to render.
 #[derive(Debug, Clone, Copy)]
 pub struct RenderOptions {
-    /// Which integrator; a chromatic scene has the spectral one, whatever stands here.
+    /// Which integrator; a [spectral](Scene::is_spectral) scene has the spectral one, whatever stands here.
     pub integrator: Integrator,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -73,10 +73,8 @@ pub fn render_pass(
                 Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
                     reference::trace_with(scene, options.estimators, ray, random)
                 }),
-                Engine::Spectral(spectral_scene) => {
-                    trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
-                        spectral_scene.trace(ray, random)
-                    })
+                Engine::Spectral(spectral) => {
+                    trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| spectral.trace(ray, random))
                 }
             };
             if !complete {
@@ -102,13 +100,13 @@ pub fn render_pass(
 enum Engine<'a> {
     Fast(FastScene<'a>),
     Reference,
-    Spectral(SpectralScene<'a>),
+    Spectral(Box<SpectralIntegrator<'a>>),
 }
 
 impl<'a> Engine<'a> {
     fn new(scene: &'a Scene, integrator: Integrator) -> Self {
         match integrator {
-            _ if scene.is_chromatic() => Self::Spectral(SpectralScene::new(scene, Channels::Rgb)),
+            _ if scene.is_spectral() => Self::Spectral(Box::new(SpectralIntegrator::new(scene))),
             Integrator::Fast => Self::Fast(FastScene::new(scene)),
             Integrator::Reference => Self::Reference,
         }

@@ -11,6 +11,8 @@ mod emission;
 mod film;
 mod lights;
 mod medium;
+mod meter;
+mod meter_rules;
 mod phase;
 pub mod phase_spec;
 mod rgb;
@@ -20,7 +22,7 @@ mod transform;
 mod units;
 mod volume;
 
-pub use automatic::{AutomaticScene, VolumeSummary};
+pub use automatic::{AutomaticScene, Glow, VolumeSummary};
 pub use camera::CameraDescription;
 pub use emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
 pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription};
@@ -29,6 +31,10 @@ pub use lights::{
     PointLightDescription, SkyDescription, SunLightDescription,
 };
 pub use medium::MediumDescription;
+pub use meter::{
+    BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
+    RadianceMeterDescription,
+};
 pub use phase::{PhaseDescription, SggxShape};
 pub use rgb::Rgb;
 pub use rules::Violation;
@@ -69,6 +75,9 @@ pub struct SceneDescription {
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,
+    /// What `tyndall measure` measures.
+    #[serde(default, rename = "meter", skip_serializing_if = "Vec::is_empty")]
+    pub meters: Vec<MeterDescription>,
 }
 
 fn default_unit() -> String {

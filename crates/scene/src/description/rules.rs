@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::meter_rules::meters;
 use super::{
     CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, PhaseDescription,
     SceneDescription, SkyDescription, SpectrumDescription, TransformDescription, VolumeDescription,
@@ -38,24 +39,25 @@ impl SceneDescription {
             found
                 .within("light", |found| found.within(&index.to_string(), |found| light(found, description)));
         }
+        meters(&mut found, &self.meters);
         found.violations
     }
 }
 
-struct Findings {
+pub(super) struct Findings {
     here: Vec<String>,
     violations: Vec<Violation>,
 }
 
 impl Findings {
-    fn within(&mut self, key: &str, inspect: impl FnOnce(&mut Self)) {
+    pub(super) fn within(&mut self, key: &str, inspect: impl FnOnce(&mut Self)) {
         self.here.push(key.to_owned());
         inspect(self);
         self.here.pop();
     }
 
     /// Reports `key` of the present table, or the table itself if `key` is empty.
-    fn report(&mut self, key: &str, message: impl Into<String>) {
+    pub(super) fn report(&mut self, key: &str, message: impl Into<String>) {
         let mut path = self.here.clone();
         if !key.is_empty() {
             path.push(key.to_owned());
@@ -63,7 +65,7 @@ impl Findings {
         self.violations.push(Violation { path, message: message.into() });
     }
 
-    fn report_zero(&mut self, key: &str, vector: [f64; 3]) {
+    pub(super) fn report_zero(&mut self, key: &str, vector: [f64; 3]) {
         if DVec3::from_array(vector).try_normalize().is_none() {
             self.report(key, format!("`{key}` is a direction and must not be [0, 0, 0]"));
         }

@@ -179,7 +179,7 @@ fn name_of(key: &str, schema: &Schema) -> String {
     let is_table = kind_of(schema) == "object" && matches!(key, "film" | "render" | "medium");
     match key {
         "camera" => "[camera]".to_owned(),
-        "volume" | "light" => format!("[[{key}]]"),
+        "volume" | "light" | "meter" => format!("[[{key}]]"),
         _ if is_table => format!("[{key}]"),
         _ => format!("`{key}`"),
     }

@@ -27,6 +27,8 @@ pub(super) struct Flight {
     pub log_next_event: DVec4,
     /// Π(1 − ρ) over the null collisions, by which the flight is less dense than the shadow ray.
     pub null_fraction: f64,
+    /// Volume, distance and 1 − ρ of the null collisions.
+    nulls: Vec<(usize, f64, f64)>,
 }
 
 impl Flight {
@@ -38,50 +40,60 @@ impl Flight {
         hero: usize,
         random: &mut Random,
     ) -> Flight {
+        let mu_t: Vec<DVec4> = media.iter().map(|medium| medium.mu_t_along(ray.direction)).collect();
         let mut collision = None;
         let mut end = f64::INFINITY;
-        // Volume, distance and 1 − ρ.
         let mut nulls: Vec<(usize, f64, f64)> = Vec::new();
-        for (number, (volume, medium)) in volumes.iter().zip(media).enumerate() {
+        for (number, (volume, mu_t)) in volumes.iter().zip(&mu_t).enumerate() {
             let local = volume.local_ray(ray);
             let note_null = |t, fraction| nulls.push((number, t, fraction));
-            let real = first_real_collision(volume, &local, end, medium.mu_t[hero], random, note_null);
+            let real = first_real_collision(volume, &local, end, mu_t[hero], random, note_null);
             if let Some(distance) = real {
                 end = distance;
                 collision = Some((distance, number));
             }
         }
-        let mut flight =
-            Flight { collision, log_density: DVec4::ZERO, log_next_event: DVec4::ZERO, null_fraction: 1.0 };
-        flight.weigh(volumes, media, ray, end, &nulls);
+        let mut flight = Flight { collision, nulls, ..Flight::start() };
+        flight.weigh(volumes, &mu_t, ray, end);
         flight
     }
 
+    /// The part of the flight before the distance `t`, which is less than that of its collision.
+    pub(super) fn up_to(&self, volumes: &[Volume], media: &[ChannelMedium], ray: &Ray, t: f64) -> Flight {
+        let mu_t: Vec<DVec4> = media.iter().map(|medium| medium.mu_t_along(ray.direction)).collect();
+        let mut part = Flight { nulls: self.nulls.clone(), ..Flight::start() };
+        part.weigh(volumes, &mu_t, ray, t);
+        part
+    }
+
+    /// A flight that has not begun.
+    fn start() -> Flight {
+        Flight {
+            collision: None,
+            log_density: DVec4::ZERO,
+            log_next_event: DVec4::ZERO,
+            null_fraction: 1.0,
+            nulls: Vec::new(),
+        }
+    }
+
     /// Fills in the densities of the flight that ends at `end`.
-    fn weigh(
-        &mut self,
-        volumes: &[Volume],
-        media: &[ChannelMedium],
-        ray: &Ray,
-        end: f64,
-        nulls: &[(usize, f64, f64)],
-    ) {
-        for (volume, medium) in volumes.iter().zip(media) {
-            let thickness =
-                optical_thickness(medium.mu_t, bound_integral(volume, &volume.local_ray(ray), end));
+    fn weigh(&mut self, volumes: &[Volume], mu_t: &[DVec4], ray: &Ray, end: f64) {
+        for (volume, mu_t) in volumes.iter().zip(mu_t) {
+            let thickness = optical_thickness(*mu_t, bound_integral(volume, &volume.local_ray(ray), end));
             self.log_density -= thickness;
             if matches!(volume.density, Density::Grid(_)) {
                 self.log_next_event -= thickness;
             }
         }
-        for &(number, _, fraction) in nulls.iter().filter(|(_, t, _)| *t < end) {
-            let log_mu_t = ln(media[number].mu_t);
+        for &(number, _, fraction) in self.nulls.iter().filter(|(_, t, _)| *t < end) {
+            let log_mu_t = ln(mu_t[number]);
             self.log_density += log_mu_t;
             self.log_next_event += log_mu_t;
             self.null_fraction *= fraction;
         }
         if let Some((_, number)) = self.collision {
-            self.log_density += ln(media[number].mu_t);
+            self.log_density += ln(mu_t[number]);
         }
     }
 }

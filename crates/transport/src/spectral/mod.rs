@@ -37,14 +37,17 @@
 
 mod densities;
 mod flight;
+mod hero_wavelengths;
 mod layers;
 mod shadow;
 
-use glam::{DVec3, DVec4};
+use glam::{DMat3, DVec3, DVec4};
 use tyndall_film::Sample;
 use tyndall_lanes::Random;
-use tyndall_optics::Spectrum;
-use tyndall_scene::{ChannelMedium, Channels, Ray, Scene};
+use tyndall_optics::{cie, uplift};
+use tyndall_scene::{ChannelMedium, Channels, Observer, Ray, Scene};
+
+use crate::emission::{emission_factor_along, emitting_stretch};
 
 use self::densities::PathDensities;
 use self::flight::Flight;
@@ -54,19 +57,74 @@ use self::shadow::ShadowRay;
 /// Weight below which roulette is played.
 const ROULETTE_WEIGHT: f64 = 0.25;
 
+/// The spectral integrator for what a scene's picture is to be.
+pub enum SpectralIntegrator<'a> {
+    /// Every path has the same channels.
+    Fixed(SpectralScene<'a>),
+    /// Every path has wavelengths of its own.
+    HeroWavelengths {
+        /// The scene.
+        scene: &'a Scene,
+        /// The film's channels of XYZ.
+        film_of_xyz: DMat3,
+    },
+}
+
+impl<'a> SpectralIntegrator<'a> {
+    /// The integrator for `scene`.
+    pub fn new(scene: &'a Scene) -> Self {
+        match scene.observer {
+            Observer::Rgb => Self::Fixed(SpectralScene::new(scene, Channels::Rgb)),
+            Observer::Bands([first, second, third]) => {
+                Self::Fixed(SpectralScene::new(scene, Channels::Wavelengths([first, second, third, third])))
+            }
+            Observer::SpectralRgb => {
+                let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(cie::xyz_to_rgb);
+                let [x, y, z] = columns;
+                Self::HeroWavelengths { scene, film_of_xyz: DMat3::from_cols(x, y, z) }
+            }
+            Observer::SpectralXyz => Self::HeroWavelengths { scene, film_of_xyz: DMat3::IDENTITY },
+        }
+    }
+
+    /// One estimate of the radiance that arrives along `ray`, sorted into the film's layers.
+    pub fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
+        match self {
+            Self::Fixed(scene) => scene.trace(ray, random),
+            Self::HeroWavelengths { scene, film_of_xyz } => {
+                let (wavelengths_nm, xyz) = hero_wavelengths::four(random.f64());
+                let mut spectral = SpectralScene::new(scene, Channels::Wavelengths(wavelengths_nm));
+                spectral.film_of_channels = xyz.map(|xyz| *film_of_xyz * xyz);
+                spectral.trace(ray, random)
+            }
+        }
+    }
+}
+
 /// A scene in the channels of a path.
 pub struct SpectralScene<'a> {
     scene: &'a Scene,
     channels: Channels,
     /// The media of the scene's volumes, in their order.
     media: Vec<ChannelMedium<'a>>,
+    /// How much of red, green and blue light there is in each channel.
+    rgb_light: [DVec3; 4],
+    /// The film's channels of radiance 1 in each channel.
+    film_of_channels: [DVec3; 4],
 }
 
 impl<'a> SpectralScene<'a> {
-    /// The scene in `channels`.
+    /// The scene in `channels`, of which the film takes the first three as they are.
     pub fn new(scene: &'a Scene, channels: Channels) -> Self {
         let media = scene.volumes.iter().map(|volume| volume.medium.in_channels(&channels)).collect();
-        Self { scene, channels, media }
+        let first_three = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO];
+        let rgb_light = match channels {
+            Channels::Rgb => first_three,
+            Channels::Wavelengths(wavelengths_nm) => {
+                wavelengths_nm.map(|nm| cie::white(nm) * uplift::basis(nm))
+            }
+        };
+        Self { scene, channels, media, rgb_light, film_of_channels: first_three }
     }
 
     /// One estimate of the radiance that arrives along `ray` in every channel, sorted into the film's layers.
@@ -82,6 +140,7 @@ impl<'a> SpectralScene<'a> {
 
         loop {
             let flight = Flight::draw(&scene.volumes, &self.media, &ray, hero, random);
+            layers.emission += albedo * self.emission_along(&ray, &flight, &densities, random);
             densities.fly(&flight);
             let Some((distance, number)) = flight.collision else {
                 layers.add_in_scattered(
@@ -93,15 +152,16 @@ impl<'a> SpectralScene<'a> {
             let position = ray.at(distance);
             let medium = &self.media[number];
             if scatterings == 0 {
-                layers.first_collision(distance, medium.albedo);
+                layers.first_collision(distance, self.albedo_of(number, position));
             }
+            let (albedo_here, emission) = scene.volumes[number].colours_at(position, medium, &self.channels);
 
-            layers.emission += albedo * densities.relative() * (DVec4::ONE - medium.albedo) * medium.emission;
+            layers.emission += albedo * densities.relative() * (DVec4::ONE - albedo_here) * emission;
 
             if scene.max_depth.is_some_and(|depth| scatterings >= depth) {
                 break;
             }
-            albedo *= medium.albedo;
+            albedo *= albedo_here;
             if !survives_roulette(&mut albedo, densities.relative(), random) {
                 break;
             }
@@ -114,7 +174,46 @@ impl<'a> SpectralScene<'a> {
             densities.turn(medium.phases.values(ray.direction, onward));
             ray = Ray { origin: position, direction: onward };
         }
-        layers.into_sample(DVec4::truncate)
+        layers.into_sample(&self.film_of_channels)
+    }
+
+    /// The albedo of a volume for the film, where it has to lie between 0 and 1: of a band at its wavelength, otherwise in
+    /// RGB.
+    fn albedo_of(&self, number: usize, position: DVec3) -> DVec3 {
+        let volume = &self.scene.volumes[number];
+        match self.scene.observer {
+            Observer::Bands(_) => {
+                volume.colours_at(position, &self.media[number], &self.channels).0.truncate()
+            }
+            _ => volume.albedo_at(position),
+        }
+    }
+
+    /// Light that volumes send out per length, up to the end of the flight: at a uniform point of each volume's stretch,
+    /// which every hero could have reached. Its mean over flights is ∫ ε T dt in every channel, as in [`crate::emission`].
+    fn emission_along(
+        &self,
+        ray: &Ray,
+        flight: &Flight,
+        densities: &PathDensities,
+        random: &mut Random,
+    ) -> DVec4 {
+        let end = flight.collision.map_or(f64::INFINITY, |(distance, _)| distance);
+        let mut sum = DVec4::ZERO;
+        for (volume, medium) in self.scene.volumes.iter().zip(&self.media) {
+            if medium.emission_per_length == DVec4::ZERO {
+                continue;
+            }
+            let Some((enter, leave)) = emitting_stretch(volume, ray, end) else { continue };
+            let t = enter + random.f64() * (leave - enter);
+            let factor = emission_factor_along(volume, ray, t);
+            if factor > 0.0 {
+                let mut here = *densities;
+                here.fly(&flight.up_to(&self.scene.volumes, &self.media, ray, t));
+                sum += here.relative() * medium.emission_per_length * (factor * (leave - enter));
+            }
+        }
+        sum
     }
 
     /// Lo: radiance of the infinite lights in `direction`, each weighted against next-event estimation having drawn it.
@@ -123,9 +222,10 @@ impl<'a> SpectralScene<'a> {
         lights
             .iter()
             .zip(light_probabilities)
-            .map(|(light, probability)| {
+            .enumerate()
+            .map(|(number, (light, probability))| {
                 let weight = densities.weight_against(probability * light.pdf(direction));
-                self.light(light.radiance(direction)) * weight
+                self.light(number, light.radiance(direction)) * weight
             })
             .sum()
     }
@@ -141,11 +241,12 @@ impl<'a> SpectralScene<'a> {
         densities: &PathDensities,
         random: &mut Random,
     ) -> DVec4 {
-        let Some((light, probability)) = self.scene.choose_light(random.f64()) else {
+        let Some((number, probability)) = self.scene.choose_light_number(random.f64()) else {
             return DVec4::ZERO;
         };
+        let light = &self.scene.lights[number];
         let sample = light.sample(position, [random.f64(), random.f64()]);
-        let radiance = self.light(sample.radiance_over_pdf) / probability;
+        let radiance = self.light(number, sample.radiance_over_pdf) / probability;
         let phase = medium.phases.values(before, sample.toward);
         if densities.relative() * phase * radiance == DVec4::ZERO {
             return DVec4::ZERO;
@@ -157,14 +258,14 @@ impl<'a> SpectralScene<'a> {
         radiance * densities.connect(phase, &shadow, light_pdf)
     }
 
-    /// A light's colour in the channels.
-    fn light(&self, colour: DVec3) -> DVec4 {
-        match self.channels {
-            Channels::Rgb => colour.extend(0.0),
-            Channels::Wavelengths(wavelengths_nm) => {
-                let spectrum = Spectrum::RgbLight(colour);
-                DVec4::from_array(wavelengths_nm.map(|nm| spectrum.at(nm)))
+    /// Light of a colour in the channels, from the light of this number.
+    fn light(&self, number: usize, colour: DVec3) -> DVec4 {
+        match (self.channels, &self.scene.light_spectra[number]) {
+            (Channels::Wavelengths(wavelengths_nm), Some(spectrum)) => {
+                let luminance = cie::luminance(colour);
+                DVec4::from_array(wavelengths_nm.map(|nm| spectrum.at(nm) * luminance))
             }
+            _ => DVec4::from_array(self.rgb_light.map(|of_rgb| of_rgb.dot(colour))),
         }
     }
 }

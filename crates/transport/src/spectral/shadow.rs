@@ -48,9 +48,10 @@ impl ShadowRay {
             null_fraction: 1.0,
             roulette: 1.0,
         };
-        for (volume, ChannelMedium { mu_t, .. }) in volumes.iter().zip(media) {
+        for (volume, medium) in volumes.iter().zip(media) {
+            let mu_t = medium.mu_t_along(ray.direction);
             let local = volume.local_ray(ray);
-            let thickness = optical_thickness(*mu_t, bound_integral(volume, &local, end));
+            let thickness = optical_thickness(mu_t, bound_integral(volume, &local, end));
             let Density::Grid(grid) = &volume.density else {
                 shadow.optical_thickness += thickness;
                 continue;
@@ -60,7 +61,7 @@ impl ShadowRay {
                 continue;
             }
             let walk = tentative_collisions(grid, &local, end, mu_t[hero], random, |_, rho, random| {
-                shadow.log_density += ln(*mu_t);
+                shadow.log_density += ln(mu_t);
                 shadow.null_fraction *= 1.0 - rho;
                 shadow.survives_roulette(random)
             });

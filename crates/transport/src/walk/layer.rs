@@ -26,7 +26,7 @@ use super::flight::{Flight, Space, Tile};
 use super::fresnel::{reflectance, refracted};
 use super::half_space::DepthLimit;
 use super::photon::{Photon, diffuse_direction};
-use super::run::Walk;
+use super::run::{Walk, fraction_error};
 use super::tally::{Estimate, Scores, Tallies};
 
 /// Light that falls on a layer.
@@ -41,7 +41,7 @@ pub enum Incidence {
 /// A layer and how it is lit and looked at.
 #[derive(Debug, Clone)]
 pub struct Layer<'a> {
-    /// The media, of which only what is between the faces counts.
+    /// The media, which are grey, and of which only what is between the faces counts.
     pub volumes: &'a [Volume],
     /// y of the lower face, which may be −∞, and of the upper one.
     pub faces: [f64; 2],
@@ -58,8 +58,6 @@ pub struct Layer<'a> {
     /// Unit vectors along which radiance is asked for, as the light travels; not horizontal. Only for a layer of
     /// refractive index 1.
     pub views: Vec<DVec3>,
-    /// Which channel of the media's albedo counts: 0, 1, 2.
-    pub channel: usize,
     /// For half-spaces that absorb next to nothing.
     pub depth_limit: Option<DepthLimit>,
 }
@@ -116,10 +114,12 @@ impl Walk for Layer<'_> {
         loop {
             match self.space().fly(&mut photon.ray, random) {
                 Flight::Collision(volume) => {
+                    let mut absorbed = 0.0;
                     if let Some(limit) = &self.depth_limit {
-                        photon.weight *= limit.lift(&mut photon.ray.origin, self.faces[1]);
+                        let left = limit.lift(&mut photon.ray.origin, self.faces[1]);
+                        absorbed += photon.absorb(left);
                     }
-                    let absorbed = photon.absorb(volume.medium.albedo[self.channel]);
+                    absorbed += photon.absorb(volume.albedo_at(photon.ray.origin).x);
                     self.score(ABSORBED, photon.ray.origin, absorbed, scores);
                     if !photon.survives_roulette(random) {
                         return;
@@ -144,20 +144,22 @@ impl Walk for Layer<'_> {
         }
     }
 
-    fn results(&self, tallies: &Tallies) -> Vec<Estimate> {
-        let fluxes = self.fluxes(tallies);
-        vec![fluxes.reflectance, fluxes.transmittance]
+    fn relative_error(&self, tallies: &Tallies) -> f64 {
+        let reflectance = fraction_error(tallies.fraction(REFLECTED), tallies);
+        let transmittance =
+            if self.is_bounded() { fraction_error(tallies.fraction(TRANSMITTED), tallies) } else { 0.0 };
+        reflectance.max(transmittance)
     }
 }
 
 impl Layer<'_> {
     /// The results that tallies of this layer hold.
     pub fn fluxes(&self, tallies: &Tallies) -> LayerFluxes {
-        let is_conservative = self.volumes.iter().all(|v| v.medium.albedo[self.channel] == 1.0);
+        let is_conservative = self.volumes.iter().all(|v| v.medium.albedo.x == 1.0 && v.fields.is_none());
         let possible = |is_possible: bool, tally: usize| {
             if is_possible { tallies.fraction(tally) } else { Estimate::exact(0.0) }
         };
-        let is_bounded = self.faces[0].is_finite();
+        let is_bounded = self.is_bounded();
         LayerFluxes {
             reflectance: tallies.fraction(REFLECTED),
             transmittance: possible(is_bounded, TRANSMITTED),
@@ -183,6 +185,10 @@ impl Layer<'_> {
             absorptance: share(ABSORBED),
             radiance: (FIRST_VIEW..self.kinds()).map(share).collect(),
         }
+    }
+
+    fn is_bounded(&self) -> bool {
+        self.faces[0].is_finite()
     }
 
     fn kinds(&self) -> usize {

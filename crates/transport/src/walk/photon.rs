@@ -30,7 +30,7 @@ impl Photon {
         Self { ray: Ray { origin, direction }, weight: 1.0, is_unscattered: true }
     }
 
-    /// Takes off what a medium absorbs; the amount.
+    /// Takes off what is absorbed where the fraction `albedo` is left; the amount.
     pub fn absorb(&mut self, albedo: f64) -> f64 {
         let absorbed = self.weight * (1.0 - albedo);
         self.weight *= albedo;

@@ -20,8 +20,8 @@ pub trait Walk: Sync {
     /// One photon, from its birth to its end.
     fn walk(&self, random: &mut Random, scores: &mut Scores);
 
-    /// The results whose relative error a run may be stopped by.
-    fn results(&self, tallies: &Tallies) -> Vec<Estimate>;
+    /// The relative standard error by which a run may be stopped.
+    fn relative_error(&self, tallies: &Tallies) -> f64;
 }
 
 /// When to stop; whichever comes first.
@@ -29,7 +29,7 @@ pub trait Walk: Sync {
 pub struct Goal {
     /// Number of photons at most; 2^31 at most.
     pub samples: u64,
-    /// Greatest relative standard error of any result that is to be reached. Results below 10⁻⁴ count as 10⁻⁴.
+    /// Relative standard error that is to be reached. Fractions below 10⁻⁴ count as 10⁻⁴.
     pub error: Option<f64>,
     /// Time after which no further pass is begun.
     pub time: Option<Duration>,
@@ -54,8 +54,8 @@ const CHUNK: u64 = 256;
 /// Photons of the first pass. The error of fewer is not to be relied upon.
 const FIRST_PASS: u64 = 1 << 13;
 
-/// What counts for the relative error of a result that is smaller.
-const LEAST_RESULT: f64 = 1e-4;
+/// What counts for the relative error of a fraction that is smaller.
+const LEAST_FRACTION: f64 = 1e-4;
 
 /// Sends photons until the goal is reached, or until `cancel` is set: then the photons of the pass under way are given
 /// up.
@@ -66,8 +66,9 @@ pub fn run(walk: &impl Walk, options: &WalkOptions, cancel: &AtomicBool) -> Tall
     let mut tallies = Tallies::new(walk.tallies());
     while tallies.photons() < limit {
         let done = tallies.photons();
-        let late = goal.time.is_some_and(|time| start.elapsed() >= time);
-        if done > 0 && (late || is_reached(goal, &walk.results(&tallies), done)) {
+        let late = || goal.time.is_some_and(|time| start.elapsed() >= time);
+        let accurate = || goal.error.is_some_and(|error| walk.relative_error(&tallies) <= error);
+        if done > 0 && (late() || accurate()) {
             break;
         }
         // Passes grow with what there is, so that goals are met to within a part of the work.
@@ -80,13 +81,11 @@ pub fn run(walk: &impl Walk, options: &WalkOptions, cancel: &AtomicBool) -> Tall
     tallies
 }
 
-fn is_reached(goal: &Goal, results: &[Estimate], photons: u64) -> bool {
-    let Some(goal) = goal.error else { return false };
-    results.iter().all(|result| {
-        // What no photon has brought anything to yet may still be as much as 1/n.
-        let error = result.standard_error.max(1.0 / photons as f64);
-        error <= goal * result.mean.abs().max(LEAST_RESULT)
-    })
+/// The relative error of a fraction of the light.
+pub(super) fn fraction_error(fraction: Estimate, tallies: &Tallies) -> f64 {
+    // What no photon has brought anything to yet may still be as much as 1/n.
+    let error = fraction.standard_error.max(1.0 / tallies.photons() as f64);
+    error / fraction.mean.abs().max(LEAST_FRACTION)
 }
 
 /// The photons with the numbers `pass`; `None` if cancelled.

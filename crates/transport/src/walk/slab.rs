@@ -44,22 +44,21 @@ impl Slab {
         let volumes = self.volumes();
         let layer = self.layer(&volumes);
         let tallies = run(&layer, options, cancel);
-        LayerFluxes { unscattered: Estimate::exact(self.unscattered()), ..layer.fluxes(&tallies) }
+        let fluxes = layer.fluxes(&tallies);
+        // Of oriented particles the extinction depends on the direction; τ is that of the most hindered.
+        let is_isotropic = DVec3::AXES.iter().all(|&axis| self.phase_function.projected_area(axis) == 1.0);
+        if is_isotropic {
+            LayerFluxes { unscattered: Estimate::exact(self.unscattered()), ..fluxes }
+        } else {
+            fluxes
+        }
     }
 
     fn volumes(&self) -> Vec<Volume> {
         if self.tau == 0.0 {
             return Vec::new();
         }
-        let medium = Medium {
-            mu_t: 1.0,
-            albedo: DVec3::splat(self.albedo),
-            phase_function: self.phase_function.clone(),
-            emission: DVec3::ZERO,
-            emission_per_length: DVec3::ZERO,
-            chromatic: None,
-            spectra: None,
-        };
+        let medium = Medium::grey(1.0, self.albedo, self.phase_function.clone());
         let density = Density::Slab { bottom: -self.tau, top: 0.0 };
         vec![Volume {
             name: "slab".into(),
@@ -85,7 +84,6 @@ impl Slab {
             ground_albedo: self.ground_albedo,
             columns: None,
             views: self.views.clone(),
-            channel: 0,
             depth_limit,
         }
     }

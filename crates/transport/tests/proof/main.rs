@@ -5,10 +5,13 @@
 
 mod agreement;
 mod chromatic;
+mod emission;
 mod estimators;
 mod rendering;
 mod same_bits;
 mod scenes;
 mod slab;
+mod spectrum;
 mod statistics;
+mod walk;
 mod white_furnace;

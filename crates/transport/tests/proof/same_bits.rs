@@ -1,7 +1,10 @@
 //! A picture is the same to the last bit however the work is shared out: among threads, and among passes.
 
+use std::sync::Arc;
+
+use glam::DVec3;
 use tyndall_film::{Film, Layers};
-use tyndall_scene::Scene;
+use tyndall_scene::{ChromaticMedium, Scene};
 use tyndall_transport::RenderOptions;
 
 use crate::rendering::{BOTH, add_pass, options};
@@ -36,13 +39,18 @@ fn crowded() -> Scene {
 
 #[test]
 fn threads_and_passes_change_no_bit() {
-    let scene = crowded();
-    for integrator in BOTH {
+    let grey = crowded();
+    // Whose integrator is the spectral one, whichever is asked for.
+    let mut chromatic = grey.clone();
+    let mu_t = DVec3::new(1.0, 2.0, 8.0);
+    chromatic.volumes[1].medium.chromatic = Some(Arc::new(ChromaticMedium { mu_t, phase_functions: None }));
+    let all = BOTH.map(|integrator| (&grey, integrator));
+    for (scene, integrator) in all.into_iter().chain([(&chromatic, BOTH[0])]) {
         let film = |threads, passes: &[[u64; 2]]| {
             let mut film = Film::new(150, 90, Layers::ALL).expect("a small picture");
             let options = RenderOptions { threads, ..options(integrator, 7) };
             for &[start, end] in passes {
-                add_pass(&scene, &mut film, start..end, options);
+                add_pass(scene, &mut film, start..end, options);
             }
             film
         };

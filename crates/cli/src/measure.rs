@@ -1,0 +1,90 @@
+//! `tyndall measure`: the meters of a scene, with their standard errors.
+
+mod report;
+mod table;
+
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use miette::{IntoDiagnostic, miette};
+use tyndall_scene::build;
+use tyndall_scene::description::MeterDescription;
+use tyndall_transport::{Measurement, measure};
+
+use crate::Done;
+use crate::effort::Effort;
+use crate::interrupt::cancel_on_interrupt;
+use crate::render::input;
+use crate::terminal::{answer, tell};
+use crate::volume_input::RawArgs;
+
+/// Measure fluxes and radiances in a scene: the values of its [[meter]] tables, with their standard errors
+///
+/// Meters are of the types layer (reflectance, transmittance, absorptance, radiance, also by column), body (a thing of
+/// finite size in a beam), irradiance and radiance (in the scene's own light); `tyndall schema` describes their keys.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "\
+Examples:
+  tyndall measure cloud.toml
+  tyndall measure cloud.toml --error 0.1% --json
+  tyndall measure cloud.toml --set meter.0.ground_albedo=0.3 --samples 100000
+
+A meter in a scene file, for the layer between y = 0 and 1 under a beam:
+  [[meter]]
+  type = \"layer\"
+  bottom = 0
+  top = 1
+  direction = [0, -1, 0]")]
+pub struct Args {
+    /// Scene file (.toml)
+    input: PathBuf,
+    #[command(flatten)]
+    effort: Effort,
+    /// Change one value of the scene, such as volume.0.mu_t=3
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Answer in JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What one meter has measured.
+pub struct Reading<'a> {
+    name: String,
+    meter: &'a MeterDescription,
+    measurement: Measurement,
+    seconds: f64,
+}
+
+/// Measures with one meter after the other, and prints.
+pub fn run(args: Args) -> miette::Result<Done> {
+    let input = input::load(Some(&args.input), &args.set, &RawArgs::default())?;
+    let description = &input.description;
+    let shown = args.input.display();
+    if description.meters.is_empty() {
+        return Err(miette!(
+            "{shown}: has no meters; add a [[meter]] table, such as type = \"layer\" with bottom and top"
+        ));
+    }
+    let built = build(description, &input.folder)?;
+    input.notes.iter().chain(&built.notes).for_each(|note| tell(format!("note: {note}")));
+    let cancel = cancel_on_interrupt()?;
+    let mut readings = Vec::new();
+    for (number, meter) in description.meters.iter().enumerate() {
+        let name = meter.name().map_or_else(|| format!("meter.{number}"), str::to_owned);
+        let start = Instant::now();
+        let measurement = measure(&built.scene, meter, &args.effort.options(number as u64), &cancel)
+            .map_err(|problem| miette!("{shown}: [[meter]] `{name}`: {problem}"))?;
+        if measurement.samples() == 0 {
+            break;
+        }
+        readings.push(Reading { name, meter, measurement, seconds: start.elapsed().as_secs_f64() });
+    }
+    if args.json {
+        answer(serde_json::to_string(&report::report(&readings)).into_diagnostic()? + "\n")?;
+    } else {
+        readings.iter().try_for_each(|reading| answer(table::table(reading)))?;
+    }
+    Ok(if cancel.load(Ordering::Relaxed) { Done::Interrupted } else { Done::All })
+}
