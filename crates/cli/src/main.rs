@@ -9,6 +9,8 @@ mod measure;
 mod measured;
 mod merge;
 mod output;
+mod phase;
+mod plot;
 mod render;
 mod slab;
 mod terminal;
@@ -44,6 +46,7 @@ enum Command {
     Diff(diff::Args),
     Slab(Box<slab::Args>),
     Measure(measure::Args),
+    Phase(phase::Args),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -82,6 +85,7 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
         Some(Command::Convert(args)) => convert::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,
         Some(Command::Diff(args)) => diff::run(args)?,
+        Some(Command::Phase(args)) => phase::run(args)?,
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "tyndall", &mut script);

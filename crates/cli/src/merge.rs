@@ -40,7 +40,10 @@ pub fn run(args: Args) -> miette::Result<()> {
         let other = Accumulation::read(path).into_diagnostic()?;
         sum.merge(first, &other, path).into_diagnostic()?;
     }
-    write_all(&args.output, &sum, args.exposure as f32)?;
+    for output in &args.output {
+        output.check_colours(&sum.metadata.colours, 1)?;
+    }
+    write_all(&args.output, std::slice::from_ref(&sum), args.exposure as f32)?;
     let film = &sum.film;
     let error = film.median_relative_error().filter(|e| e.is_finite());
     let error = error.map_or("unknown".into(), |e| format!("{:.3} %", 100.0 * e));

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_film::{Accumulation, Summary, write_exr, write_png};
+use tyndall_film::{Accumulation, Colours, Summary, write_bands_exr, write_png};
 
 /// A file that `-o` names: `.exr`, `.png`, `.acc` or `.json`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,23 +43,42 @@ impl Output {
         &self.path
     }
 
-    fn write(&self, picture: &Accumulation, exposure: f32) -> miette::Result<()> {
-        let Accumulation { film, metadata } = picture;
+    fn write(&self, pictures: &[Accumulation], exposure: f32) -> miette::Result<()> {
+        let Some(Accumulation { film, metadata }) = pictures.first() else { return Ok(()) };
         match self.format {
-            Format::Exr => write_exr(&self.path, film, metadata),
+            Format::Exr => write_bands_exr(&self.path, pictures),
             Format::Png => write_png(&self.path, film, exposure),
-            Format::Accumulation => picture.write(&self.path),
-            Format::Json => Summary::new(film, metadata).write_json(&self.path),
+            Format::Accumulation => pictures[0].write(&self.path),
+            Format::Json => {
+                let summary = Summary::of_bands(pictures).unwrap_or_else(|| Summary::new(film, metadata));
+                summary.write_json(&self.path)
+            }
         }
         .into_diagnostic()
     }
+
+    /// Refuses files that cannot hold a picture of these colours, made of so many films.
+    pub fn check_colours(&self, colours: &Colours, films: usize) -> miette::Result<()> {
+        match self.format {
+            Format::Png if *colours != Colours::Rgb => Err(miette!(
+                "{}: a .png shows red, green and blue, which XYZ and bands are not; name an .exr or .json",
+                self.path.display()
+            )),
+            Format::Accumulation if films > 1 => Err(miette!(
+                "{}: an .acc file holds at most three bands; give fewer in film.bands, or name an .exr or .json",
+                self.path.display()
+            )),
+            _ => Ok(()),
+        }
+    }
 }
 
-/// Writes the picture to all of `outputs`; `exposure` in stops only concerns `.png`.
+/// Writes the picture, which is several films if it has more than three bands, to all of `outputs`; `exposure` in stops
+/// only concerns `.png`.
 ///
 /// One that cannot be written does not keep the picture from the others.
-pub fn write_all(outputs: &[Output], picture: &Accumulation, exposure: f32) -> miette::Result<()> {
-    let written: Vec<_> = outputs.iter().map(|output| output.write(picture, exposure)).collect();
+pub fn write_all(outputs: &[Output], pictures: &[Accumulation], exposure: f32) -> miette::Result<()> {
+    let written: Vec<_> = outputs.iter().map(|output| output.write(pictures, exposure)).collect();
     written.into_iter().collect()
 }
 

@@ -1,5 +1,6 @@
 //! `tyndall render`: a scene or a volume becomes a picture with its error.
 
+mod estimators;
 pub mod input;
 mod progress;
 pub mod stop;
@@ -10,15 +11,16 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_film::{Accumulation, Film, ImageMetadata, Layers};
+use tyndall_film::{Accumulation, Colours, Film, ImageMetadata, Layers};
 use tyndall_scene::description::{Integrator, Layer, SceneDescription};
-use tyndall_scene::{Scene, build, scene_hash};
+use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
 use crate::output::{Output, check_writable, parse_exposure, write_all};
 use crate::terminal::{answer, tell};
 use crate::volume_input::RawArgs;
+use estimators::EstimatorArgs;
 use progress::{Progress, ProgressStyle};
 use stop::{Goal, Plan};
 
@@ -64,6 +66,8 @@ pub struct Args {
     /// Which integrator: one path at a time to read beside the equations, or many at once
     #[arg(long, value_name = "reference|fast", value_parser = parse_integrator)]
     integrator: Option<Integrator>,
+    #[command(flatten)]
+    estimators: EstimatorArgs,
     /// Save the exact sums here every minute and at the end, for --resume
     #[arg(long, value_name = "FILE.acc")]
     checkpoint: Option<PathBuf>,
@@ -94,6 +98,7 @@ impl Args {
             exposure: None,
             set: Vec::new(),
             integrator: None,
+            estimators: EstimatorArgs::default(),
             checkpoint: None,
             resume: false,
             progress: ProgressStyle::default(),
@@ -110,33 +115,66 @@ pub fn run(args: Args) -> miette::Result<Done> {
     if args.print_scene {
         return answer(&input.text).map(|()| Done::All);
     }
-    let outputs = if args.output.is_empty() { input.default_outputs() } else { args.output.clone() };
+    let observers = observers(description);
+    let colours = colours(observers[0]);
+    let outputs = if args.output.is_empty() { input.default_outputs(&colours) } else { args.output.clone() };
+    for output in &outputs {
+        output.check_colours(&colours, observers.len())?;
+    }
+    if args.checkpoint.is_some() && observers.len() > 1 {
+        return Err(miette!(
+            "--checkpoint: an .acc file holds at most three bands; give fewer in film.bands"
+        ));
+    }
     check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
 
     let [width, height] = description.film.resolution;
     // First of all, as it may be too large for this machine.
-    let film = Film::new(width, height, layers(description)).into_diagnostic()?;
+    let new_film = || Film::new(width, height, layers(description)).into_diagnostic();
+    let films = observers.iter().map(|_| new_film()).collect::<miette::Result<Vec<Film>>>()?;
     let built = build(description, &input.folder)?;
-    for note in input.notes.iter().chain(&built.notes) {
+    let estimators =
+        args.estimators.choose(description.render.integrator, args.input.as_deref(), &built.scene)?;
+    for note in input.notes.iter().chain(&built.notes).chain(&estimators.notes()) {
         tell(format!("note: {note}"));
     }
-    if built.scene.is_chromatic() {
-        tell("note: some extinction or phase function depends on colour: the spectral integrator renders");
+    if args.integrator.is_none() && args.estimators.integrator().is_some() {
+        tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
     }
-    let mut picture = open_picture(&args, description, &input.folder, film)?;
+    if built.scene.is_spectral() {
+        let why = if built.scene.is_chromatic() {
+            "some extinction or phase function depends on colour"
+        } else {
+            "the picture is computed from wavelengths"
+        };
+        tell(format!("note: {why}: the spectral integrator renders it"));
+    }
+    let mut pictures = Vec::new();
+    for (film, observer) in films.into_iter().zip(&observers) {
+        pictures.push(open_picture(&args, description, &input.folder, estimators, film, *observer)?);
+    }
     let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
-    let end = render(&args, &built.scene, description, &plan, &mut picture)?;
+    let end = render(&args, built.scene, &observers, description, &plan, &mut pictures)?;
 
-    if picture.film.mean_sample_count() == 0.0 {
-        tell("interrupted before anything was rendered; nothing is written");
+    if pictures.iter().any(|picture| picture.film.mean_sample_count() == 0.0) {
+        tell("interrupted before all was rendered once; nothing is written");
         return Ok(end);
     }
     let exposure = args.exposure.unwrap_or(description.film.exposure) as f32;
-    let saved = args.checkpoint.as_deref().map_or(Ok(()), |checkpoint| picture.write(checkpoint));
-    write_all(&outputs, &picture, exposure)?;
+    let saved = args.checkpoint.as_deref().map_or(Ok(()), |checkpoint| pictures[0].write(checkpoint));
+    write_all(&outputs, &pictures, exposure)?;
     saved.into_diagnostic()?;
-    report(&picture, &outputs, &end);
+    report(&pictures, &outputs, &end);
     Ok(end)
+}
+
+/// What the channels of an observer's film are.
+fn colours(observer: Observer) -> Colours {
+    match observer {
+        Observer::Rgb | Observer::SpectralRgb => Colours::Rgb,
+        Observer::SpectralXyz => Colours::Xyz,
+        Observer::Bands(wavelengths_nm) => Colours::Bands(wavelengths_nm),
+    }
 }
 
 /// The options that stand for keys of the scene, as `--set` would give them.
@@ -144,7 +182,8 @@ fn overrides(args: &Args) -> Vec<String> {
     let mut overrides = args.set.clone();
     overrides.extend(args.resolution.map(|[width, height]| format!("film.resolution=[{width}, {height}]")));
     overrides.extend(args.seed.map(|seed| format!("render.seed={seed}")));
-    overrides.extend(args.integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
+    let integrator = args.integrator.or(args.estimators.integrator());
+    overrides.extend(integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
     overrides
 }
 
@@ -160,13 +199,20 @@ fn open_picture(
     args: &Args,
     description: &SceneDescription,
     folder: &Path,
+    estimators: Estimators,
     film: Film,
+    observer: Observer,
 ) -> miette::Result<Accumulation> {
     let metadata = ImageMetadata {
         scene_hash: scene_hash(description, folder)?.to_string(),
         version: env!("CARGO_PKG_VERSION").to_string(),
-        options: format!("integrator={}", name(description.render.integrator)),
+        options: format!(
+            "integrator={}{}",
+            name(description.render.integrator),
+            estimators::as_options(estimators)
+        ),
         seed: u64::from(description.render.seed),
+        colours: colours(observer),
         seconds: 0.0,
     };
     let empty = Accumulation { film, metadata };
@@ -184,7 +230,7 @@ fn open_picture(
     let shape = |film: &Film| (film.width(), film.height(), film.layers());
     if !same(&saved.metadata, &empty.metadata) || shape(&saved.film) != shape(&empty.film) {
         return Err(miette!(
-            "{}: is of another scene, size, seed, integrator, layers or version; name another --checkpoint",
+            "{}: is of another scene, size, seed, integrator, estimators, layers or version; name another --checkpoint",
             checkpoint.display()
         ));
     }
@@ -202,45 +248,50 @@ fn layers(description: &SceneDescription) -> Layers {
     }
 }
 
-/// Renders pass after pass until the plan is fulfilled or Ctrl-C is pressed.
+/// Renders pass after pass, each for all observers, until the plan is fulfilled or Ctrl-C is pressed.
 fn render(
     args: &Args,
-    scene: &Scene,
+    mut scene: Scene,
+    observers: &[Observer],
     description: &SceneDescription,
     plan: &Plan,
-    picture: &mut Accumulation,
+    pictures: &mut [Accumulation],
 ) -> miette::Result<Done> {
     let control = Arc::new(Control::default());
     stop_on_interrupt(&control)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let options = RenderOptions {
         integrator: description.render.integrator,
-        seed: picture.metadata.seed,
+        seed: pictures[0].metadata.seed,
         threads: args.threads.map_or(cores, usize::from),
-        estimators: Estimators::default(),
+        estimators: args.estimators.chosen(),
     };
-    let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
-    let mut clock = stop::Clock::start(picture.metadata.seconds);
+    let [width, height] = scene.resolution.map(u64::from);
+    let pixels = width * height * observers.len() as u64;
+    let mut clock = stop::Clock::start(pictures[0].metadata.seconds);
     let progress = Progress::start(args.progress, pixels, plan.spp(), Arc::clone(&control));
     let mut end = Done::All;
-    while let Some(pass) = plan.next_pass(&picture.film, &clock) {
-        picture.film.open_range(pass.start).into_diagnostic()?;
-        let outcome = render_pass(scene, &mut picture.film, pass.end, &options, &control);
-        picture.metadata.seconds = clock.seconds();
-        if outcome == Outcome::Cancelled {
-            end = Done::Interrupted;
-            break;
+    'passes: while let Some(pass) = plan.next_pass(pictures, &clock) {
+        for (picture, observer) in pictures.iter_mut().zip(observers) {
+            scene.observer = *observer;
+            picture.film.open_range(pass.start).into_diagnostic()?;
+            let outcome = render_pass(&scene, &mut picture.film, pass.end, &options, &control);
+            picture.metadata.seconds = clock.seconds();
+            if outcome == Outcome::Cancelled {
+                end = Done::Interrupted;
+                break 'passes;
+            }
+            // Only what was resumed can hold more than was asked for now.
+            let resumed = args.checkpoint.as_deref().unwrap_or(Path::new("the picture"));
+            picture
+                .film
+                .complete_through(pass.end)
+                .map_err(|error| miette!("{}: {error} (--spp or --samples)", resumed.display()))?;
         }
-        // Only what was resumed can hold more than was asked for now.
-        let resumed = args.checkpoint.as_deref().unwrap_or(Path::new("the picture"));
-        picture
-            .film
-            .complete_through(pass.end)
-            .map_err(|error| miette!("{}: {error} (--spp or --samples)", resumed.display()))?;
-        progress.pass_done(&picture.film);
+        progress.pass_done(&pictures[0].film);
         if let Some(checkpoint) = args.checkpoint.as_deref().filter(|_| clock.checkpoint_is_due()) {
             // The next may go well, and the picture itself is not lost.
-            if let Err(error) = picture.write(checkpoint) {
+            if let Err(error) = pictures[0].write(checkpoint) {
                 tell(format!("note: no checkpoint: {error}"));
             }
         }
@@ -260,8 +311,8 @@ fn stop_on_interrupt(control: &Arc<Control>) -> miette::Result<()> {
     .into_diagnostic()
 }
 
-fn report(picture: &Accumulation, outputs: &[Output], end: &Done) {
-    let film = &picture.film;
+fn report(pictures: &[Accumulation], outputs: &[Output], end: &Done) {
+    let film = &pictures[0].film;
     let error = film.median_relative_error().filter(|error| error.is_finite());
     let error = error.map_or("error not known yet".into(), |e| format!("median error {:.2} %", 100.0 * e));
     let interrupted = if matches!(end, Done::Interrupted) { "interrupted: " } else { "" };
@@ -271,10 +322,11 @@ fn report(picture: &Accumulation, outputs: &[Output], end: &Done) {
         "{interrupted}{}x{}, {samples} samples a pixel, {error}, {:.1} s",
         film.width(),
         film.height(),
-        picture.metadata.seconds
+        pictures.iter().map(|picture| picture.metadata.seconds).fold(0.0, f64::max)
     ));
-    if film.rejected() > 0 {
-        tell(format!("note: {} samples were not finite or too large and count as black", film.rejected()));
+    let rejected: u64 = pictures.iter().map(|picture| picture.film.rejected()).sum();
+    if rejected > 0 {
+        tell(format!("note: {rejected} samples were not finite or too large and count as black"));
     }
     for output in outputs {
         tell(format!("wrote {}", output.path().display()));

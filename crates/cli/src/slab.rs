@@ -14,6 +14,7 @@ use crate::Done;
 use crate::effort::Effort;
 use crate::interrupt::cancel_on_interrupt;
 use crate::measured::{Value, with_error};
+use crate::phase;
 use crate::terminal::answer;
 
 /// Reflectance, transmittance and absorptance of a plane-parallel layer, with their standard errors
@@ -37,7 +38,7 @@ pub struct Args {
     /// Mean cosine of the Henyey-Greenstein phase function; above 0 is forward
     #[arg(long, value_name = "G", default_value = "0", allow_negative_numbers = true, value_parser = parse_g)]
     g: f64,
-    /// Phase function in its place, such as rayleigh or hg(g=0.85)
+    /// Phase function in its place, such as rayleigh or draine(g=0.6,alpha=0.5); see `tyndall phase`
     #[arg(long, value_name = "SPEC", conflicts_with = "g")]
     phase: Option<String>,
     /// Where the light comes from: along the normal, DEG degrees off it, or evenly from the whole hemisphere
@@ -73,7 +74,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return Err(miette!("--radiance: is not known behind reflecting faces; leave --n away"));
     }
     let phase_function = match &args.phase {
-        Some(spec) => parse_phase(spec)?,
+        Some(spec) => phase::read(spec)?,
         None => PhaseFunction::HenyeyGreenstein { g: args.g },
     };
     let slab = Slab {
@@ -184,14 +185,6 @@ fn table(args: &Args, fluxes: &LayerFluxes, seconds: f64) -> String {
         fluxes.samples
     );
     text
-}
-
-/// Until the phase functions have their own language.
-fn parse_phase(spec: &str) -> miette::Result<PhaseFunction> {
-    match spec {
-        "isotropic" => Ok(PhaseFunction::Isotropic),
-        _ => Err(miette!("--phase {spec}: there is `isotropic`")),
-    }
 }
 
 fn parse_tau(text: &str) -> Result<f64, String> {

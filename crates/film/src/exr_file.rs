@@ -1,7 +1,7 @@
 //! A film as an OpenEXR picture.
 //!
-//! One part with one flat list of channels (`R`, `StandardError.R`, `Depth.Z`, …; see [`Film::channels`]), all
-//! 32-bit float and linear with Rec.709 primaries, ZIP-compressed in scan lines: the plainest form that the format
+//! One part with one flat list of channels (`R`, `StandardError.R`, `Depth.Z`, …; see [`named_channels`]), all
+//! 32-bit float and linear, with Rec.709 primaries if it is a picture in RGB, ZIP-compressed in scan lines: the plainest form that the format
 //! has, so that every program reads it. Attributes: `seed`, `samples` (such as `0..64`), `sceneHash`, `options`
 //! (text), `seconds` (double), `rejected` (text) and the standard `software`. Format: OpenEXR file layout, openexr.com.
 
@@ -14,15 +14,32 @@ use exr::prelude::{
     LayerAttributes, Text, Vec2, WritableImage,
 };
 
+use crate::accumulation_file::Accumulation;
 use crate::atomic_write::write_atomically;
+use crate::colours::{Colours, channels_of_bands, named_channels};
 use crate::error::FileError;
+use crate::estimates::Channel;
 use crate::film::Film;
 use crate::metadata::ImageMetadata;
 
 /// Writes all layers of a film.
 pub fn write_exr(path: &Path, film: &Film, metadata: &ImageMetadata) -> Result<(), FileError> {
-    let channels = film
-        .channels()
+    write_channels(path, named_channels(film, &metadata.colours), film, metadata)
+}
+
+/// Writes all layers of the films that make a picture of many bands, with the first one's attributes.
+pub fn write_bands_exr(path: &Path, pictures: &[Accumulation]) -> Result<(), FileError> {
+    let Some(Accumulation { film, metadata }) = pictures.first() else { return Ok(()) };
+    write_channels(path, channels_of_bands(pictures), film, metadata)
+}
+
+fn write_channels(
+    path: &Path,
+    channels: Vec<Channel>,
+    film: &Film,
+    metadata: &ImageMetadata,
+) -> Result<(), FileError> {
+    let channels = channels
         .into_iter()
         .map(|channel| AnyChannel::new(text(&channel.name), FlatSamples::F32(channel.values)))
         .collect();
@@ -34,7 +51,7 @@ pub fn write_exr(path: &Path, film: &Film, metadata: &ImageMetadata) -> Result<(
     };
     let layer = Layer::new(size, attributes(film, metadata), encoding, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);
-    image.attributes.chromaticities = Some(REC_709);
+    image.attributes.chromaticities = (metadata.colours == Colours::Rgb).then_some(REC_709);
     let mut bytes = Cursor::new(Vec::new());
     image
         .write()
@@ -128,6 +145,7 @@ mod tests {
             version: "1.2.3".into(),
             options: "integrator=fast".into(),
             seed: u64::MAX,
+            colours: Colours::Rgb,
             seconds: 1.5,
         };
         let folder = tempfile::tempdir().unwrap();

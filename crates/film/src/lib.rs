@@ -8,6 +8,7 @@
 
 mod accumulation_file;
 mod atomic_write;
+mod colours;
 pub mod comparison;
 mod error;
 mod estimates;
@@ -25,9 +26,10 @@ mod tone_map;
 
 pub use accumulation_file::Accumulation;
 pub use atomic_write::write_atomically;
+pub use colours::{BandMean, Colours, named_channels};
 pub use error::FileError;
 pub use estimates::{Channel, Estimate, LUMINANCE};
-pub use exr_file::write_exr;
+pub use exr_file::{write_bands_exr, write_exr};
 pub use film::{Film, FilmTile, MAX_PIXELS, MergeError, Rect, SizeError, TILE_EDGE};
 pub use metadata::ImageMetadata;
 pub use png_file::write_png;

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::colours::Colours;
+
 /// How the samples of a film were made; kept in `.acc` and `.exr` files and in the summary.
 ///
 /// Two films are estimates of the same picture, and can be merged, if all but `seconds` is equal.
@@ -15,6 +17,9 @@ pub struct ImageMetadata {
     pub options: String,
     /// Seed of the random numbers.
     pub seed: u64,
+    /// What the channels are.
+    #[serde(default)]
+    pub colours: Colours,
     /// Time spent on rendering in seconds, summed over machines.
     pub seconds: f64,
 }

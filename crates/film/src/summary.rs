@@ -4,7 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::accumulation_file::Accumulation;
 use crate::atomic_write::write_atomically;
+use crate::colours::{BandMean, Colours, band_means};
 use crate::error::FileError;
 use crate::estimates::Estimate;
 use crate::film::Film;
@@ -24,7 +26,12 @@ pub struct Summary {
     pub samples_per_pixel: f64,
     /// Time of rendering.
     pub seconds: f64,
-    /// Mean radiance of red, green, blue and its standard error; no error (`null`) with fewer than two samples.
+    /// What the channels are.
+    pub colours: Colours,
+    /// Mean radiance of all bands, if the picture is one of bands.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bands: Vec<BandMean>,
+    /// Mean radiance of the first three channels and its standard error; no error (`null`) with fewer than two samples.
     pub mean: [Estimate; 3],
     /// See [`Film::median_relative_error`]; `null` if it is not known.
     pub median_relative_error: Option<f64>,
@@ -49,6 +56,8 @@ impl Summary {
             samples: film.complete().clone(),
             samples_per_pixel: film.mean_sample_count(),
             seconds: metadata.seconds,
+            colours: metadata.colours,
+            bands: Vec::new(),
             mean: film.image_mean(),
             median_relative_error: film.median_relative_error().filter(|e| e.is_finite()),
             rejected: film.rejected(),
@@ -57,6 +66,13 @@ impl Summary {
             version: metadata.version.clone(),
             options: metadata.options.clone(),
         }
+    }
+
+    /// Sums up the films that make a picture of bands; of what is not about one band, it gives the first film's. `None` if
+    /// there is no film.
+    pub fn of_bands(pictures: &[Accumulation]) -> Option<Self> {
+        let Accumulation { film, metadata } = pictures.first()?;
+        Some(Self { bands: band_means(pictures), ..Self::new(film, metadata) })
     }
 
     /// Writes it as JSON.

@@ -12,12 +12,12 @@ use tyndall_volumes::{
 use crate::build_fields::build_fields;
 use crate::build_medium::build_medium;
 use crate::description::{
-    AtmosphereShape, ColourMode, FilmOutput, GridFilter, GridMeaning, ProceduralDescription, RawType,
-    Storage, VolumeDescription, VolumeSource,
+    AtmosphereShape, GridFilter, GridMeaning, ProceduralDescription, RawType, Storage, VolumeDescription,
+    VolumeSource,
 };
 use crate::light::build_lights;
 use crate::ready::light_probabilities;
-use crate::{Camera, Density, Observer, Scene, SceneDescription, SceneError, Volume, procedural};
+use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
 #[derive(Debug, Clone)]
@@ -66,22 +66,9 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
         light_spectra: lights.spectra,
         light_probabilities,
         max_depth: description.render.max_depth,
-        observer: observer(description),
+        observer: observers(description)[0],
     };
     Ok(BuiltScene { scene, grids, notes })
-}
-
-/// What the channels of the picture are; of more than three bands the first three.
-fn observer(description: &SceneDescription) -> Observer {
-    match (description.render.mode, description.film.output, description.film.bands.as_deref()) {
-        (ColourMode::Rgb, ..) => Observer::Rgb,
-        (ColourMode::Spectral, _, Some([first, rest @ ..])) => {
-            let second = rest.first().unwrap_or(first);
-            Observer::Bands([*first, *second, *rest.get(1).unwrap_or(second)])
-        }
-        (ColourMode::Spectral, FilmOutput::Rgb, _) => Observer::SpectralRgb,
-        (ColourMode::Spectral, FilmOutput::Xyz, _) => Observer::SpectralXyz,
-    }
 }
 
 fn build_volume(

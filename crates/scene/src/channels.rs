@@ -9,7 +9,8 @@ use std::borrow::Cow;
 use glam::{DVec3, DVec4};
 use tyndall_optics::{PhaseFunction, Spectrum, planck, uplift};
 
-use crate::{Medium, Volume};
+use crate::description::{ColourMode, FilmOutput};
+use crate::{Medium, SceneDescription, Volume};
 
 /// What the channels of a path are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +51,21 @@ pub enum Observer {
     SpectralXyz,
     /// Radiance at three wavelengths, nm.
     Bands([f64; 3]),
+}
+
+/// The observers whose films make the picture of a scene: at least one, and one for each three bands. Where bands do not
+/// fill the last three, the last of them is repeated.
+pub fn observers(description: &SceneDescription) -> Vec<Observer> {
+    let bands = description.film.bands.as_deref().unwrap_or_default();
+    match (description.render.mode, description.film.output) {
+        (ColourMode::Rgb, _) => vec![Observer::Rgb],
+        (ColourMode::Spectral, _) if !bands.is_empty() => {
+            let three = |bands: &[f64]| Observer::Bands([0, 1, 2].map(|i| bands[i.min(bands.len() - 1)]));
+            bands.chunks(3).map(three).collect()
+        }
+        (ColourMode::Spectral, FilmOutput::Rgb) => vec![Observer::SpectralRgb],
+        (ColourMode::Spectral, FilmOutput::Xyz) => vec![Observer::SpectralXyz],
+    }
 }
 
 /// What a medium does to light where its density is 1, in each channel of a path.

@@ -2,14 +2,29 @@
 
 use glam::DVec3;
 use std::path::Path;
+use tyndall_optics::mie::MieCache;
 use tyndall_optics::phase_function::{Sggx, SggxKind, read_phase_table};
 use tyndall_optics::{PhaseFunction, SpectralPhase};
 
 use crate::SceneError;
 use crate::description::{PhaseDescription, SggxShape};
+use crate::mie::{BLUE_GREEN_RED_NM, mie_average, phase_of_each};
 
-/// The phase function over wavelength; a table's file name is relative to `folder`.
+/// Wavelength, in nm, that stands for all where a picture has no wavelengths.
+pub(crate) const GREY_WAVELENGTH_NM: f64 = 550.0;
+
+/// The phase function over wavelength; a table's file name is relative to `folder`, and Lorenz-Mie theory is kept in the
+/// cache that the environment names.
 pub fn build_phase(description: &PhaseDescription, folder: &Path) -> Result<SpectralPhase, SceneError> {
+    build_phase_with(description, folder, &MieCache::from_environment())
+}
+
+/// The same, with a cache for Lorenz-Mie theory.
+pub fn build_phase_with(
+    description: &PhaseDescription,
+    folder: &Path,
+    cache: &MieCache,
+) -> Result<SpectralPhase, SceneError> {
     let phase = match *description {
         PhaseDescription::Isotropic => PhaseFunction::Isotropic,
         PhaseDescription::Hg { g } => PhaseFunction::HenyeyGreenstein { g },
@@ -37,6 +52,26 @@ pub fn build_phase(description: &PhaseDescription, folder: &Path) -> Result<Spec
                 None => return Ok(table),
             }
         }
+        PhaseDescription::Mie { wavelength_nm, ref m, x, .. } => {
+            // A size parameter and a constant index: the wavelength does not matter.
+            let is_grey = x.is_some() && m.is_some();
+            let one = wavelength_nm.or(is_grey.then_some(GREY_WAVELENGTH_NM));
+            let wavelengths_nm = one.map_or(BLUE_GREEN_RED_NM.to_vec(), |nm| vec![nm]);
+            return phase_of_each(&wavelengths_nm, |nm| {
+                let average = mie_average(description, nm, folder, cache)?;
+                average.ok_or_else(|| SceneError::file(Path::new("mie"), "is no phase function of spheres"))
+            });
+        }
     };
     Ok(phase.into())
+}
+
+/// The phase function that stands for all wavelengths, and a note on which it is if the choice was not the user's.
+pub fn grey_phase(spectral: &SpectralPhase) -> (PhaseFunction, Option<String>) {
+    let note = (!spectral.is_grey()).then(|| {
+        format!(
+            "the phase function is that at {GREY_WAVELENGTH_NM} nm; the key `wavelength_nm` names another"
+        )
+    });
+    (spectral.at(GREY_WAVELENGTH_NM), note)
 }

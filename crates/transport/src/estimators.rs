@@ -37,6 +37,11 @@ impl Estimators {
     /// # Errors
     /// The reason why not, and what to take instead.
     pub fn validate(&self, scene: &Scene) -> Result<(), Reason> {
+        if *self != Self::default() && scene.is_spectral() {
+            let why =
+                "the scene is for the spectral integrator, which has estimators of its own; leave them to it";
+            return Err(Reason(why.into()));
+        }
         self.properties().try_for_each(|properties| validate(properties, scene))
     }
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use miette::miette;
+use tyndall_film::Colours;
 use tyndall_scene::description::{Glow, VolumeSummary};
 use tyndall_scene::{SceneDescription, SceneDocument, choose_density};
 use tyndall_volumes::{Grid, GridValues};
@@ -29,9 +30,9 @@ pub struct Input {
 const DEFAULT_SCENE: &str = include_str!("../../../../scenes/cloud.toml");
 
 impl Input {
-    /// A picture to work with and one to look at, in the working folder.
-    pub fn default_outputs(&self) -> Vec<Output> {
-        [".exr", ".png"]
+    /// A picture to work with and, of colours, one to look at, otherwise the numbers, in the working folder.
+    pub fn default_outputs(&self, colours: &Colours) -> Vec<Output> {
+        [".exr", if *colours == Colours::Rgb { ".png" } else { ".json" }]
             .iter()
             .filter_map(|extension| format!("{}{extension}", self.stem).parse().ok())
             .collect()

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use tyndall_film::Film;
+use tyndall_film::{Accumulation, Film};
 
 /// When to stop
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -50,8 +50,9 @@ impl Plan {
         (self.samples.end < u64::MAX).then(|| self.samples.end - self.samples.start)
     }
 
-    /// The next samples to render; `None` when it is done.
-    pub fn next_pass(&self, film: &Film, clock: &Clock) -> Option<Range<u64>> {
+    /// The next samples to render of all films of a picture, which hold the same samples; `None` when it is done.
+    pub fn next_pass(&self, pictures: &[Accumulation], clock: &Clock) -> Option<Range<u64>> {
+        let film = &pictures.first()?.film;
         let held = film.complete();
         let first_gap = held
             .as_slice()
@@ -59,7 +60,7 @@ impl Plan {
             .find(|range| range.contains(&self.samples.start))
             .map_or(self.samples.start, |range| range.end);
         let start = film.open_start().unwrap_or(first_gap);
-        if start >= self.samples.end || self.error_is_reached(film) {
+        if start >= self.samples.end || self.error_is_reached(pictures) {
             return None;
         }
         // Passes grow with what is there, so that a stop rule is met to within a part of the work.
@@ -76,10 +77,12 @@ impl Plan {
         Some(start..end)
     }
 
-    fn error_is_reached(&self, film: &Film) -> bool {
-        let enough = film.complete().count() >= LEAST_SAMPLES_FOR_ERROR;
-        enough
-            && self.error.is_some_and(|goal| film.median_relative_error().is_some_and(|error| error <= goal))
+    fn error_is_reached(&self, pictures: &[Accumulation]) -> bool {
+        let is_below = |film: &Film, goal: f64| {
+            film.complete().count() >= LEAST_SAMPLES_FOR_ERROR
+                && film.median_relative_error().is_some_and(|error| error <= goal)
+        };
+        self.error.is_some_and(|goal| pictures.iter().all(|picture| is_below(&picture.film, goal)))
     }
 }
 
@@ -171,9 +174,11 @@ mod tests {
     fn passes_follow_each_other_to_the_end_of_the_range() {
         let plan = Plan::new(&Goal::default(), Some(10..51), 64);
         let clock = Clock::start(0.0);
-        let mut film = Film::new(1, 1, Layers::NONE).unwrap();
+        let film = Film::new(1, 1, Layers::NONE).unwrap();
+        let mut pictures = [Accumulation { film, metadata: Default::default() }];
         let mut next = 10;
-        while let Some(pass) = plan.next_pass(&film, &clock) {
+        while let Some(pass) = plan.next_pass(&pictures, &clock) {
+            let film = &mut pictures[0].film;
             assert_eq!(pass.start, next);
             next = pass.end;
             film.open_range(pass.start).unwrap();

@@ -5,6 +5,7 @@ use std::ops::Range;
 use proptest::prelude::*;
 
 use super::*;
+use crate::colours::Colours;
 use crate::film::FilmTile;
 use crate::sample::Sample;
 
@@ -14,6 +15,7 @@ fn metadata() -> ImageMetadata {
         version: "0.1.0".into(),
         options: "integrator=fast".into(),
         seed: 7,
+        colours: Colours::Xyz,
         seconds: 2.0,
     }
 }

@@ -62,7 +62,7 @@ pub enum SizeLaw {
 const CUT: f64 = -17.0;
 
 /// Radii that are computed, µm.
-const RADII: std::ops::RangeInclusive<f64> = 1e-4..=1e5;
+const RADII: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 impl From<SizeLaw> for SizeDistribution {
     /// The distribution with nothing cut off.
@@ -75,7 +75,7 @@ impl SizeDistribution {
     /// An error if a parameter is out of range.
     pub fn check(&self) -> Result<(), MieError> {
         let radius =
-            |key, value| refuse_unless(RADII.contains(&value), key, value, "it must be from 1e-4 to 1e5 µm");
+            |key, value| refuse_unless(RADII.contains(&value), key, value, "it must be from 1e-6 to 1e6 µm");
         let within = |range: std::ops::RangeInclusive<f64>, key, value, mend| {
             refuse_unless(range.contains(&value), key, value, mend)
         };

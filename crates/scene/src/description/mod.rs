@@ -13,11 +13,15 @@ mod lights;
 mod medium;
 mod meter;
 mod meter_rules;
+mod mie_spec;
+mod particles;
 mod phase;
 pub mod phase_spec;
+mod quantity;
 mod rgb;
 mod rules;
 mod spectrum;
+mod spheres;
 mod transform;
 mod units;
 mod volume;
@@ -35,10 +39,13 @@ pub use meter::{
     BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
     RadianceMeterDescription,
 };
+pub use particles::ParticlesDescription;
 pub use phase::{PhaseDescription, SggxShape};
+pub use quantity::Quantity;
 pub use rgb::Rgb;
 pub use rules::Violation;
 pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
+pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};
 pub use units::unit_in_metres;
 pub use volume::{

@@ -4,6 +4,8 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::spheres::{DistributionDescription, IndexDescription, MaterialName, substance};
+
 /// How scattered light is spread over directions. Asymmetries above 0 are forward.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -80,6 +82,30 @@ pub enum PhaseDescription {
         #[schemars(extend("exclusiveMinimum" = 0))]
         wavelength_nm: Option<f64>,
     },
+    /// Spheres, by Lorenz-Mie theory: of `material`, `m` or `material_file`, and of the sizes of a `distribution` or of
+    /// one size parameter `x`.
+    Mie {
+        /// A material that is built in.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        material: Option<MaterialName>,
+        /// Refractive index relative to the medium around.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        m: Option<IndexDescription>,
+        /// A CSV table of the refractive index, with the heading `wavelength_nm,n,k` or `wavelength_um,n,k`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        material_file: Option<String>,
+        /// Sizes of the spheres.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        distribution: Option<DistributionDescription>,
+        /// Size parameter of one sphere: circumference over wavelength.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-6, max = 1e5))]
+        x: Option<f64>,
+        /// Wavelength, in nm, whose phase function is taken; that of each colour unless given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        wavelength_nm: Option<f64>,
+    },
 }
 
 /// What oriented particles look like.
@@ -103,6 +129,9 @@ impl PhaseDescription {
             Self::Sggx { axis, .. } if DVec3::from_array(*axis).try_normalize().is_none() => {
                 Some(("axis", "`axis` is a direction and must not be [0, 0, 0]".into()))
             }
+            Self::Mie { material, m, material_file, distribution, x, .. } => {
+                mie_violation(*material, m.as_ref(), material_file.as_deref(), distribution.as_ref(), *x)
+            }
             _ => None,
         }
     }
@@ -111,6 +140,7 @@ impl PhaseDescription {
     pub fn file(&self) -> Option<&str> {
         match self {
             Self::Tabulated { file, .. } => Some(file),
+            Self::Mie { material_file, .. } => material_file.as_deref(),
             _ => None,
         }
     }
@@ -119,7 +149,28 @@ impl PhaseDescription {
     pub fn file_mut(&mut self) -> Option<&mut String> {
         match self {
             Self::Tabulated { file, .. } => Some(file),
+            Self::Mie { material_file, .. } => material_file.as_mut(),
             _ => None,
         }
+    }
+}
+
+fn mie_violation(
+    material: Option<MaterialName>,
+    m: Option<&IndexDescription>,
+    material_file: Option<&str>,
+    distribution: Option<&DistributionDescription>,
+    x: Option<f64>,
+) -> Option<(&'static str, String)> {
+    if let Err(violation) = substance(material, m, material_file) {
+        return Some(violation);
+    }
+    match (distribution, x) {
+        (Some(distribution), None) => {
+            distribution.value().err().map(|(_, message)| ("distribution", message))
+        }
+        (None, Some(_)) => None,
+        (None, None) => Some(("", "the spheres have no size: give `distribution` or `x`".into())),
+        (Some(_), Some(_)) => Some(("x", "the spheres have both `x` and `distribution`: keep one".into())),
     }
 }

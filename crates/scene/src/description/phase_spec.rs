@@ -1,6 +1,6 @@
 //! Phase functions in one line: `rayleigh`, `hg(g=0.85)`, `hg:0.85`, `fog(d=10um)`, `sggx(kind=fibre, roughness=0.3)`.
 //!
-//! The text is a [`call`](super::call) whose name is the `type` of a [`PhaseDescription`] and whose values are its keys;
+//! The text is a call whose name is the `type` of a [`PhaseDescription`] and whose values are its keys;
 //! calls within it are tables that are told apart by their `type`. It is made the tree that a scene file would give and
 //! held against the same schema, so that names, ranges and messages are those of scene files. Two things are shorter
 //! here. A key may leave its unit to the value: `wavelength=0.55um` is `wavelength_nm=550`. And the only key that a type
@@ -11,8 +11,8 @@ use std::sync::Arc;
 use miette::NamedSource;
 use serde_json::Value as Schema;
 
-use super::PhaseDescription;
 use super::call::{self, Argument, Call, Term};
+use super::{PhaseDescription, mie_spec};
 use crate::SceneError;
 use crate::toml::conformance;
 use crate::toml::schema::schema_of;
@@ -44,7 +44,7 @@ pub fn parse(text: &str) -> Result<PhaseDescription, SceneError> {
     if text.len() > GREATEST_LENGTH {
         return Err(place.problem("is too long for a phase function in one line").into());
     }
-    let call = call::parse(text).map_err(|message| place.problem(message))?;
+    let call = call::parse(text).map(mie_spec::named).map_err(|message| place.problem(message))?;
     let schema = schema_of::<PhaseDescription>();
     let node = Tree { place: &place }.table(&call, &schema)?;
     SceneError::unless_empty(conformance::problems(&node, "the phase function", &schema))?;

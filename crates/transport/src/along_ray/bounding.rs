@@ -55,7 +55,7 @@ pub enum Control {
 pub struct Bounding {
     /// Over what they are taken.
     pub extent: Extent,
-    /// Factor on the majorant.
+    /// Factor on the majorants.
     pub majorant_scale: f64,
     /// What the control is.
     pub control: Control,
@@ -88,7 +88,7 @@ impl Bounding {
             minorant: cell.min,
             majorant,
             control,
-            residual_majorant: (majorant - control).max(control - cell.min),
+            residual_majorant: self.majorant_scale * (cell.max - control).max(control - cell.min),
         }
     }
 }

@@ -28,7 +28,7 @@ pub(super) const PROPERTIES: Properties = Properties {
 /// r: probability that the next finer level is drawn.
 const FINER: f64 = 0.353_553_390_593_273_8;
 /// Most steps of the coarsest march.
-const MOST_STEPS: f64 = 1e6;
+const MOST_STEPS: f64 = 1e5;
 
 pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> f64 {
     let coarsest = ray.majorant_thickness().ceil().clamp(1.0, MOST_STEPS) as u64;

@@ -10,9 +10,10 @@ use std::sync::Arc;
 use tyndall_film::Film;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Density, Scene};
+use tyndall_transport::RenderOptions;
 use tyndall_volumes::{BrickGrid, LEAF_VOXELS, Leaf, Storage, Tree};
 
-use crate::rendering::render;
+use crate::rendering::{options, render_with};
 use crate::scenes::{scene, scene_in, write_npy, write_random_npy};
 use crate::statistics::{mean_and_error, normal_from_student, two_sided_quantile};
 
@@ -63,9 +64,14 @@ pub type Batches = Vec<(String, Vec<f64>)>;
 
 /// The values in `count` batches.
 pub fn batches(scene: &Scene, integrator: Integrator, seed: u64, count: u64) -> Batches {
+    batches_with(scene, options(integrator, seed), count)
+}
+
+/// The same with any options.
+pub fn batches_with(scene: &Scene, options: RenderOptions, count: u64) -> Batches {
     let mut all: Batches = Vec::new();
     for batch in 0..count {
-        let film = render(scene, integrator, seed, batch * SAMPLES..(batch + 1) * SAMPLES);
+        let film = render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES);
         let means = region_means(&film);
         if all.is_empty() {
             all = means.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
@@ -137,6 +143,44 @@ fn a_cloud_under_sun_and_sky() {
         cloud.max_depth = max_depth;
         assert_integrators_agree(&format!("cloud to depth {max_depth:?}"), &cloud);
     }
+}
+
+/// Oriented particles have another extinction along each ray, in a grid and in a shape; the fog's peak is sharp.
+#[test]
+fn oriented_particles_beside_fog() {
+    let folder = tempfile::tempdir().expect("a folder for test files");
+    write_random_npy(&folder.path().join("random.npy"), [16, 16, 16], 23);
+    let scene = scene_in(
+        folder.path(),
+        &format!(
+            r#"{HEAD}
+            [[volume]]
+            file = "random.npy"
+            mu_t = 6
+            albedo = [1, 0.9, 0.8]
+            phase = {{ type = "sggx", kind = "fibre", roughness = 0.2, axis = [1, 0.5, 0.2] }}
+            transform = {{ scale = 0.09, translate = [-1.1, -0.7, -0.7] }}
+            [[volume]]
+            sphere = {{ center = [0.5, 0, 0], radius = 0.8 }}
+            mu_t = 2
+            albedo = 0.95
+            phase = {{ type = "sggx", kind = "surface", roughness = 0.3, axis = [0, 1, 0] }}
+            [[volume]]
+            sphere = {{ center = [0, -0.5, 0.2], radius = 0.7 }}
+            mu_t = 1
+            albedo = 1
+            phase = {{ type = "fog", droplet_diameter_um = 12 }}
+            [[light]]
+            type = "distant"
+            direction = [-0.4, -1, -0.5]
+            irradiance = 2
+            [[light]]
+            type = "constant"
+            radiance = 0.3
+            "#
+        ),
+    );
+    assert_integrators_agree("oriented particles beside fog", &scene);
 }
 
 #[test]

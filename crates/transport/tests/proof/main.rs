@@ -7,6 +7,7 @@ mod agreement;
 mod chromatic;
 mod emission;
 mod estimators;
+mod phase_functions;
 mod rendering;
 mod same_bits;
 mod scenes;

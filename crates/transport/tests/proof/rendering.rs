@@ -16,10 +16,15 @@ pub fn options(integrator: Integrator, seed: u64) -> RenderOptions {
 
 /// A film of `samples` of every pixel, rendered on one thread; no sample was refused.
 pub fn render(scene: &Scene, integrator: Integrator, seed: u64, samples: Range<u64>) -> Film {
+    render_with(scene, options(integrator, seed), samples)
+}
+
+/// The same with other options.
+pub fn render_with(scene: &Scene, options: RenderOptions, samples: Range<u64>) -> Film {
     let [width, height] = scene.resolution;
     let mut film = Film::new(width, height, Layers::ALL).expect("test pictures are small");
-    add_pass(scene, &mut film, samples, options(integrator, seed));
-    assert_eq!(film.rejected(), 0, "{integrator:?} made samples that are no numbers");
+    add_pass(scene, &mut film, samples, options);
+    assert_eq!(film.rejected(), 0, "{options:?} made samples that are no numbers");
     film
 }
 

@@ -20,8 +20,8 @@ fn grey_media_look_the_same_in_rgb_and_by_wavelengths() {
     let mut spectral = grey.clone();
     spectral.observer = Observer::SpectralRgb;
     let pair = [
-        batches(&grey, Integrator::Reference, 51, BATCHES),
-        batches(&spectral, Integrator::Fast, 52, BATCHES),
+        batches(&grey, Integrator::Reference, 54, BATCHES),
+        batches(&spectral, Integrator::Fast, 53, BATCHES),
     ];
     assert_same_batches("by wavelengths", [Integrator::Reference, Integrator::Fast], &pair);
 }

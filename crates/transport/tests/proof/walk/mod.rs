@@ -1,7 +1,11 @@
 //! Forward walks against tables: layers, half-spaces, bodies, clouds.
 
+mod bodies;
 mod calibration;
+mod clouds;
 mod half_space;
+mod infinite_medium;
+mod phase_functions;
 mod slab;
 mod slab_radiance;
 

@@ -10,8 +10,8 @@ use tyndall_transport::walk::{Goal, Incidence, Slab, WalkOptions};
 fn matched_slabs_reflect_and_transmit_what_adding_doubling_says() {
     let mut rare = Family::default();
     for (name, table, least) in [
-        ("matched slabs", include_str!("../../truth/slab_matched.json"), 1 << 11),
-        ("thick slabs", include_str!("../../truth/slab_thick.json"), 1 << 10),
+        ("matched slabs", include_str!("../../truth/slab_matched.json"), 1 << 10),
+        ("thick slabs", include_str!("../../truth/slab_thick.json"), 1 << 9),
     ] {
         let n = photons(least);
         let mut families = [Family::default(), Family::default()];
@@ -33,7 +33,7 @@ fn matched_slabs_reflect_and_transmit_what_adding_doubling_says() {
 
 #[test]
 fn slabs_with_fresnel_faces_reflect_and_transmit_what_adding_doubling_says() {
-    let n = photons(1 << 12);
+    let n = photons(1 << 11);
     let mut rare = Family::default();
     let mut families = [Family::default(), Family::default()];
     for (number, row) in rows(include_str!("../../truth/slab_fresnel.json"), "rows").iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Distance samplers and transmittance estimators against quadrature.
+//! The default choice in grids against quadrature, the fast engine's collisions, and what both rely on.
 //!
 //! Between two planes of voxel centres the trilinear field along a ray is a cubic polynomial, which Simpson's rule
 //! integrates exactly; so ∫ μt, and with it the law of every collision, is known to rounding.
@@ -83,7 +83,7 @@ fn heterogeneous() -> Vec<(String, Scene)> {
 }
 
 /// A ray that points into the volume from some way outside.
-fn ray_through(volume: &Volume, random: &mut Random) -> Ray {
+pub fn ray_through(volume: &Volume, random: &mut Random) -> Ray {
     let [min, max] = volume.world_box().expect("a grid has a box");
     let u = DVec3::new(random.f64(), random.f64(), random.f64());
     let direction = random_direction(random);
