@@ -1,4 +1,4 @@
-//! From the description of a phase function to the phase function, for all wavelengths and for the grey view.
+//! From the description of a phase function to the phase function, for all wavelengths.
 
 use glam::DVec3;
 use std::path::Path;
