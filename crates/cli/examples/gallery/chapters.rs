@@ -185,4 +185,43 @@ pub const CHAPTERS: &[Chapter] = &[
     ),
     chart("13_distance_sampling", Chart::Distances),
     chart("14_transmittance_estimation", Chart::Transmittances),
+    panels(
+        "15_chromatic_media",
+        4,
+        &[
+            panel("scene.toml", "whole milk"),
+            panel("scene.toml --set volume.0.preset=Skimmilk", "skimmed milk"),
+            panel("scene.toml --set volume.0.preset=Ketchup", "ketchup"),
+            panel("scene.toml --set volume.0.preset=CranberryJuice", "cranberry juice"),
+        ],
+    ),
+    panels(
+        "16_blackbody_fire",
+        5,
+        &[
+            panel("scene.toml --set volume.0.emission.blackbody=1200", "1200 K: embers"),
+            panel("scene.toml --set volume.0.emission.blackbody=1900", "1900 K: a candle"),
+            panel("scene.toml", "3000 K: a light bulb"),
+            panel("scene.toml --set volume.0.emission.blackbody=5800", "5800 K: the sun"),
+            panel("scene.toml --set volume.0.emission.blackbody=20000", "20000 K: a hot star"),
+        ],
+    ),
+    panels(
+        "17_rainbow_and_glory",
+        3,
+        &[
+            panel("scene.toml", "droplets of 10 μm: fogbow, glory"),
+            panel("scene.toml --set volume.0.particles.distribution.r_eff=50um", "50 μm"),
+            panel("scene.toml --set volume.0.particles.distribution.r_eff=500um", "500 μm: rain"),
+        ],
+    ),
+    panels(
+        "18_blue_sky",
+        3,
+        &[
+            panel("scene.toml", "the sun 60° high"),
+            panel("scene.toml --set light.0.direction=[-0.3,-0.15,-0.95]", "9° high"),
+            panel("scene.toml --set light.0.direction=[-0.3,-0.03,0.95]", "setting before us"),
+        ],
+    ),
 ];

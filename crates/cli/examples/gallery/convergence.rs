@@ -13,7 +13,6 @@ use tyndall_lanes::Random;
 use tyndall_scene::{Ray, Scene, SceneDocument, build};
 use tyndall_transport::trace;
 
-use crate::marks::{cross, error_bar};
 use crate::plot::{Anchor, Axes, COLOURS, Kind, Scale, Svg, legend};
 
 /// Optical thickness of the ball along the ray.
@@ -43,7 +42,9 @@ pub fn draw(folder: &Path) -> Result<String, Box<dyn Error>> {
         for (step, (mean, error)) in (0..).zip(run).skip(1) {
             // Beside each other, so that the bars do not hide each other.
             let beside = 1.0 + 0.12 * (COLOURS.iter().position(|c| c == colour).unwrap_or(0) as f64 - 1.5);
-            error_bar(&mut svg, &axes, colour, (samples(step) * beside, *mean), *error);
+            let n = samples(step) * beside;
+            axes.error_bar(&mut svg, colour, n, [mean - error, mean + error]);
+            axes.dot(&mut svg, colour, true, (n, *mean));
         }
     }
     legend(&mut svg, [320.0, 256.0], ["one run", "another", "a third", "a fourth"].into_iter());
@@ -59,9 +60,9 @@ pub fn draw(folder: &Path) -> Result<String, Box<dyn Error>> {
             (runs.iter().map(|run| square(&run[step as usize])).sum::<f64>() / RUNS as f64).sqrt()
         };
         let n = samples(step);
-        cross(&mut svg, &axes, COLOURS[0], (n, over_runs(&|(mean, _)| (mean - truth).powi(2))));
+        axes.dot(&mut svg, COLOURS[0], true, (n, over_runs(&|(mean, _)| (mean - truth).powi(2))));
         if step > 0 {
-            cross(&mut svg, &axes, COLOURS[1], (n, over_runs(&|(_, error)| error.powi(2))));
+            axes.dot(&mut svg, COLOURS[1], false, (n, over_runs(&|(_, error)| error.powi(2))));
         }
     }
     legend(

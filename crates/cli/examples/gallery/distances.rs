@@ -7,12 +7,11 @@ use tyndall_lanes::Random;
 use tyndall_transport::along_ray::{Bounding, Extent, Profile};
 use tyndall_transport::{AlongRay, DistanceSampler, Lookups, repeat_distance};
 
-use crate::marks::error_bar;
 use crate::plot::{Anchor, Axes, COLOURS, Kind, Scale, Svg, legend};
 
 /// Length of the ray.
 pub const LENGTH: f64 = 4.0;
-const BINS: usize = 32;
+const BINS: usize = 24;
 const FLIGHTS: u64 = 20_000;
 const SAMPLERS: [DistanceSampler; 3] = [
     DistanceSampler::DeltaTracking,
@@ -58,11 +57,12 @@ pub fn draw() -> String {
             let density = share / width;
             let error = (share * (1.0 - share) / FLIGHTS as f64).sqrt() / width;
             let t = width * (bin as f64 + 0.25 * (number as f64 + 1.0));
-            error_bar(&mut svg, &axes, colour, (t, density), error);
+            axes.error_bar(&mut svg, colour, t, [density - error, density + error]);
+            axes.dot(&mut svg, colour, true, (t, density));
         }
     }
     for (label, place) in [("μt", (2.42, 1.75)), ("T", (0.1, 1.04)), ("p = μt T", (1.42, 0.62))] {
-        if let Some(place) = axes.at(place) {
+        if let Some(place) = axes.place(place.0, place.1) {
             svg.text("", Anchor::Start, place, label);
         }
     }

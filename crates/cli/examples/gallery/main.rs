@@ -11,7 +11,6 @@ mod convergence;
 mod distances;
 mod font;
 mod layers;
-mod marks;
 #[path = "../../src/plot/mod.rs"]
 #[allow(dead_code, unused_imports, reason = "the command draws more kinds of charts")]
 mod plot;

@@ -6,7 +6,6 @@
 use tyndall_transport::{AlongRay, Lookups, Repeated, TransmittanceEstimator, repeat_transmittance};
 
 use crate::distances::{LENGTH, profile};
-use crate::marks::cross;
 use crate::plot::{Anchor, Axes, COLOURS, Kind, Scale, Svg};
 
 const SAMPLES: u64 = 40_000;
@@ -48,8 +47,8 @@ pub fn draw() -> String {
 
 fn mark(svg: &mut Svg, axes: &Axes, number: u32, result: &Repeated) {
     let point = (result.lookups, result.variance.sqrt() / result.mean);
-    cross(svg, axes, COLOURS[0], point);
-    if let Some([x, y]) = axes.at(point) {
+    axes.dot(svg, COLOURS[0], true, point);
+    if let Some([x, y]) = axes.place(point.0, point.1) {
         svg.text("", Anchor::Start, [x + 6.0, y - 4.0], &number.to_string());
     }
 }
