@@ -28,6 +28,10 @@ fn small_render(scene: &Path) -> String {
         if volume.contains("procedural") {
             line += &format!(" --set volume.{number}.procedural.resolution=16");
         }
+        // Small droplets are soon summed up.
+        if volume.contains("r_eff") {
+            line += &format!(" --set volume.{number}.phase.distribution.r_eff=0.5um");
+        }
     }
     line
 }
