@@ -53,7 +53,7 @@ pub struct MediumDescription {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emission: Option<SpectrumDescription>,
     /// Radiance per scene unit that the medium adds to a ray, whatever it absorbs; multiplied by the density, or by the
-    /// `emission_grid` if there is one.
+    /// `emission_grid` if there is one (inside a shape; beside a density grid as well).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emission_per_length: Option<SpectrumDescription>,
 }

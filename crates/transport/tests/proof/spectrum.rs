@@ -16,6 +16,7 @@ fn grey_media_look_the_same_in_rgb_and_by_wavelengths() {
     let mut grey = crowd();
     for (volume, albedo) in grey.volumes.iter_mut().zip([0.8, 0.9, 1.0, 0.5]) {
         volume.medium.albedo = DVec3::splat(albedo);
+        volume.medium.spectra = None;
     }
     let mut spectral = grey.clone();
     spectral.observer = Observer::SpectralRgb;
