@@ -16,7 +16,7 @@ fn read(table: &str) -> Result<PhaseDescription, SceneError> {
          medium = {{ mu_t = 1, albedo = 1, phase = {table} }}"
     );
     let description = SceneDocument::parse("scene.toml", &text)?.description()?;
-    Ok(description.medium.unwrap().phase)
+    Ok(description.medium.unwrap().phase.unwrap_or_default())
 }
 
 #[test]
