@@ -3,6 +3,7 @@
 mod convert;
 mod diff;
 mod effort;
+mod estimators;
 mod inspect;
 mod interrupt;
 mod measure;
@@ -44,6 +45,7 @@ enum Command {
     Convert(convert::Args),
     Merge(merge::Args),
     Diff(diff::Args),
+    Estimators(Box<estimators::Args>),
     Slab(Box<slab::Args>),
     Measure(measure::Args),
     Phase(phase::Args),
@@ -85,6 +87,7 @@ fn run(command: Option<Command>) -> miette::Result<Done> {
         Some(Command::Convert(args)) => convert::run(args)?,
         Some(Command::Merge(args)) => merge::run(args)?,
         Some(Command::Diff(args)) => diff::run(args)?,
+        Some(Command::Estimators(args)) => estimators::run(*args)?,
         Some(Command::Phase(args)) => phase::run(args)?,
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();

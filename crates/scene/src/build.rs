@@ -11,14 +11,13 @@ use tyndall_volumes::{
 
 use crate::build_fields::build_fields;
 use crate::build_medium::build_medium;
-use crate::channels::observers;
 use crate::description::{
     AtmosphereShape, GridFilter, GridMeaning, ProceduralDescription, RawType, Storage, VolumeDescription,
     VolumeSource,
 };
 use crate::light::build_lights;
 use crate::ready::light_probabilities;
-use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, procedural};
+use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
 #[derive(Debug, Clone)]

@@ -7,14 +7,11 @@ use glam::DVec3;
 use tyndall_optics::Spectrum;
 
 use crate::description::{KeyProblem, MediumDescription, SpectrumDescription};
-use crate::phase::build_phase;
+use crate::phase::{GREY_WAVELENGTH_NM, build_phase};
 use crate::{ChromaticMedium, Medium, MediumPhase, MediumSpectra, SceneError};
 
 /// Relative difference between channels that still counts as grey: decimals that were rounded.
 const GREY_TOLERANCE: f64 = 1e-6;
-
-/// Wavelength, in nm, whose phase function stands for all where there is one for all.
-const GREY_NM: f64 = 550.0;
 
 /// The medium, of which messages say `name`; `unit` is the scene's, file names are relative to `folder`, and
 /// `emission_scale` multiplies what it emits.
@@ -34,7 +31,7 @@ pub(crate) fn build_medium(
         )?),
     };
     let coefficients = description
-        .coefficients(unit, phase.at(GREY_NM).mean_cosine())
+        .coefficients(unit, phase.at(GREY_WAVELENGTH_NM).mean_cosine())
         .map_err(|(_, message)| refuse(message))?;
     let light = |emission: &Option<SpectrumDescription>| -> Result<Spectrum, SceneError> {
         let spectrum = emission.as_ref().map(SpectrumDescription::light).transpose();
@@ -61,7 +58,7 @@ fn of_spectra(spectra: MediumSpectra) -> Medium {
     let is_coloured =
         channels.max_element() - channels.min_element() > GREY_TOLERANCE * channels.max_element();
     let phase_functions = spectra.phase.rgb();
-    let phase_function = spectra.phase.at(GREY_NM);
+    let phase_function = spectra.phase.at(GREY_WAVELENGTH_NM);
     let chromatic = (is_coloured || phase_functions.is_some())
         .then(|| Arc::new(ChromaticMedium { mu_t: channels, phase_functions }));
     let light = |spectrum: &Spectrum| if spectrum.is_zero() { DVec3::ZERO } else { spectrum.light_rgb() };

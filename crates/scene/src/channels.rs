@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use glam::{DVec3, DVec4};
 use tyndall_optics::{PhaseFunction, Spectrum, planck, uplift};
 
-use crate::description::{ColourMode, FilmDescription, FilmOutput};
+use crate::description::{ColourMode, FilmOutput};
 use crate::{Medium, SceneDescription, Volume};
 
 /// What the channels of a path are.
@@ -56,15 +56,15 @@ pub enum Observer {
 /// The observers whose films make the picture of a scene: at least one, and one for each three bands. Where bands do not
 /// fill the last three, the last of them is repeated.
 pub fn observers(description: &SceneDescription) -> Vec<Observer> {
-    let FilmDescription { output, bands, .. } = &description.film;
-    match (description.render.mode, output, bands) {
-        (ColourMode::Spectral, _, Some(bands)) if !bands.is_empty() => bands
-            .chunks(3)
-            .map(|three| Observer::Bands([0, 1, 2].map(|index| three[index.min(three.len() - 1)])))
-            .collect(),
-        (ColourMode::Spectral, FilmOutput::Xyz, _) => vec![Observer::SpectralXyz],
-        (ColourMode::Spectral, FilmOutput::Rgb, _) => vec![Observer::SpectralRgb],
-        (ColourMode::Rgb, ..) => vec![Observer::Rgb],
+    let bands = description.film.bands.as_deref().unwrap_or_default();
+    match (description.render.mode, description.film.output) {
+        (ColourMode::Rgb, _) => vec![Observer::Rgb],
+        (ColourMode::Spectral, _) if !bands.is_empty() => {
+            let three = |bands: &[f64]| Observer::Bands([0, 1, 2].map(|i| bands[i.min(bands.len() - 1)]));
+            bands.chunks(3).map(three).collect()
+        }
+        (ColourMode::Spectral, FilmOutput::Rgb) => vec![Observer::SpectralRgb],
+        (ColourMode::Spectral, FilmOutput::Xyz) => vec![Observer::SpectralXyz],
     }
 }
 

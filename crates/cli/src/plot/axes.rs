@@ -19,12 +19,26 @@ impl Axes {
         Axes { x, y: Scale::around(kind, values, [bottom, top]), frame }
     }
 
+    /// A frame between `left`, `top`, `right`, `bottom` with scales of a kind around the values of both.
+    pub fn around(
+        frame: [f64; 4],
+        (x_kind, x_values): (Kind, impl Iterator<Item = f64>),
+        (y_kind, y_values): (Kind, impl Iterator<Item = f64>),
+    ) -> Axes {
+        let [left, top, right, bottom] = frame;
+        let x = Scale::around(x_kind, x_values, [left, right]);
+        Axes { x, y: Scale::around(y_kind, y_values, [bottom, top]), frame }
+    }
+
     /// Draws the frame, with grid, ticks and names; `x_step` between the ticks of x, if they are not to be chosen.
     pub fn draw(&self, svg: &mut Svg, x_name: &str, x_step: Option<f64>, y_name: &str) {
         let [left, top, right, bottom] = self.frame;
         for tick in self.x.ticks(x_step) {
-            svg.line("grid", [tick.pixel, top], [tick.pixel, bottom]);
-            svg.line("tick", [tick.pixel, bottom], [tick.pixel, bottom + 4.0]);
+            let length = if tick.label.is_empty() { 2.0 } else { 4.0 };
+            if !tick.label.is_empty() {
+                svg.line("grid", [tick.pixel, top], [tick.pixel, bottom]);
+            }
+            svg.line("tick", [tick.pixel, bottom], [tick.pixel, bottom + length]);
             svg.text("small", Anchor::Middle, [tick.pixel, bottom + 17.0], &tick.label);
         }
         for tick in self.y.ticks(None) {
@@ -43,6 +57,35 @@ impl Axes {
 
     /// Draws a curve; points that have no place on the scales are left out.
     pub fn curve(&self, svg: &mut Svg, colour: &str, points: impl Iterator<Item = (f64, f64)>) {
-        svg.curve(colour, points.map(|(x, y)| Some([self.x.at(x)?, self.y.at(y)?])));
+        self.styled_curve(svg, colour, "", points);
+    }
+
+    /// The same with more attributes of SVG.
+    pub fn styled_curve(
+        &self,
+        svg: &mut Svg,
+        colour: &str,
+        attributes: &str,
+        points: impl Iterator<Item = (f64, f64)>,
+    ) {
+        svg.styled_curve(colour, attributes, points.map(|(x, y)| self.place(x, y)));
+    }
+
+    /// Draws a dot, if its place is in the frame.
+    pub fn dot(&self, svg: &mut Svg, colour: &str, filled: bool, (x, y): (f64, f64)) {
+        if let Some(place) = self.place(x, y) {
+            svg.dot(colour, filled, place, 3.2);
+        }
+    }
+
+    /// Draws an error bar from `low` to `high`, cut at the lower end of the frame.
+    pub fn error_bar(&self, svg: &mut Svg, colour: &str, x: f64, [low, high]: [f64; 2]) {
+        let Some([x, top]) = self.place(x, high) else { return };
+        let bottom = self.y.at(low).unwrap_or(self.frame[3]);
+        svg.styled_curve(colour, "stroke-width=\"1\"", [Some([x, top]), Some([x, bottom])]);
+    }
+
+    fn place(&self, x: f64, y: f64) -> Option<[f64; 2]> {
+        Some([self.x.at(x)?, self.y.at(y)?])
     }
 }

@@ -4,13 +4,15 @@
 //! [`Polar`] are frames that take curves, [`legend()`] says which is which.
 
 mod axes;
+mod bars;
 mod legend;
 mod polar;
 mod scale;
 mod svg;
 
 pub use axes::Axes;
-pub use legend::{COLOURS, legend};
+pub use bars::{Bar, Bars};
+pub use legend::{COLOURS, Look, legend, styled_legend};
 pub use polar::Polar;
 pub use scale::{Kind, Scale};
-pub use svg::{Anchor, Svg};
+pub use svg::{Anchor, Svg, escaped};

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 /// A sheet to draw on.
 pub struct Svg {
+    size: [f64; 2],
     text: String,
 }
 
@@ -20,18 +21,19 @@ pub enum Anchor {
 
 /// Looks of the shapes, by class; the rest of a chart's code says what things are, not how they look.
 const STYLE: &str = "\
-text{font:13px system-ui,sans-serif;fill:#222}.small{font-size:11px;fill:#555}.title{font-size:15px;font-weight:600}\
+text{font:13px system-ui,sans-serif;fill:#222}.small{font-size:11px;fill:#555}.tiny{font-size:8px;fill:#555}.title{font-size:15px;font-weight:600}\
 .frame{fill:none;stroke:#444}.grid{fill:none;stroke:#ddd}.tick{stroke:#444}\
 .curve{fill:none;stroke-width:1.7;stroke-linejoin:round}";
 
 impl Svg {
     /// A white sheet of this size in pixels.
     pub fn new(width: f64, height: f64) -> Svg {
-        let text = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-             height=\"{height}\">\n<style>{STYLE}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-        );
-        Svg { text }
+        Svg { size: [width, height], text: String::new() }
+    }
+
+    /// Makes the sheet as high as this.
+    pub fn set_height(&mut self, height: f64) {
+        self.size[1] = height;
     }
 
     fn push(&mut self, shape: std::fmt::Arguments) {
@@ -59,8 +61,34 @@ impl Svg {
         ));
     }
 
+    /// A rectangle filled with a colour.
+    pub fn bar(&mut self, colour: &str, [left, top]: [f64; 2], [right, bottom]: [f64; 2]) {
+        let (width, height) = (right - left, bottom - top);
+        self.push(format_args!(
+            "<rect fill=\"{colour}\" x=\"{left:.2}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{height:.2}\"/>\n"
+        ));
+    }
+
+    /// A dot of a colour; with a white middle if it is not `filled`.
+    pub fn dot(&mut self, colour: &str, filled: bool, [x, y]: [f64; 2], radius: f64) {
+        let fill = if filled { colour } else { "#fff" };
+        self.push(format_args!(
+            "<circle fill=\"{fill}\" stroke=\"{colour}\" cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius:.2}\"/>\n"
+        ));
+    }
+
     /// A curve through points, with a gap at each `None`.
     pub fn curve(&mut self, colour: &str, points: impl IntoIterator<Item = Option<[f64; 2]>>) {
+        self.styled_curve(colour, "", points);
+    }
+
+    /// The same with more attributes of SVG, such as `stroke-dasharray="2 3"`.
+    pub fn styled_curve(
+        &mut self,
+        colour: &str,
+        attributes: &str,
+        points: impl IntoIterator<Item = Option<[f64; 2]>>,
+    ) {
         let mut path = String::new();
         let mut pen = 'M';
         for point in points {
@@ -72,7 +100,10 @@ impl Svg {
                 None => pen = 'M',
             }
         }
-        self.push(format_args!("<path class=\"curve\" stroke=\"{colour}\" d=\"{path}\"/>\n"));
+        let space = if attributes.is_empty() { "" } else { " " };
+        self.push(format_args!(
+            "<path class=\"curve\" stroke=\"{colour}\"{space}{attributes} d=\"{path}\"/>\n"
+        ));
     }
 
     /// A line of text, with the exponents of powers of ten raised: `10^-3`.
@@ -99,10 +130,22 @@ impl Svg {
     }
 
     /// The document.
-    pub fn finish(mut self) -> String {
-        self.text.push_str("</svg>\n");
-        self.text
+    pub fn finish(self) -> String {
+        let [width, height] = self.size;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+             height=\"{height}\">\n<style>{STYLE}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+             {}</svg>\n",
+            self.text
+        )
     }
+}
+
+/// The text with what means something in XML or HTML escaped.
+pub fn escaped(text: &str) -> String {
+    let mut content = String::new();
+    escape(&mut content, text);
+    content
 }
 
 /// Escapes what means something in XML, drops what XML cannot hold, and raises exponents.

@@ -3,12 +3,14 @@
 //! μt(t) is the sum over the media that the ray crosses. It can be looked up at a place ([`AlongRay::mu_t`], counted);
 //! it has bounds over pieces of the ray ([`AlongRay::pieces`]), from which null-collision methods take majorant,
 //! minorant and control; and its integral τ and the inverse of that are known to rounding
-//! ([`AlongRay::thickness`], [`AlongRay::distance_at`]), by formula or voxel by voxel.
+//! ([`AlongRay::thickness`], [`AlongRay::distance_at`]), by formula or voxel by voxel; so is the mean of a function of the
+//! collision distance ([`AlongRay::collision_mean`]), by quadrature.
 //!
 //! Media are cut where no light gets any farther in double precision (τ = 800), and thinning ones where what is left of
 //! them is below 10⁻¹⁸; so every stretch is finite.
 
 mod bounding;
+mod collision_mean;
 mod extinction;
 mod merge;
 mod profile;

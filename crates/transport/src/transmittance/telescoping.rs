@@ -1,6 +1,8 @@
 //! Debiased ray marching: the bias of coarse steps is taken off by a telescoping sum, of which one term is drawn.
 //!
-//!   T = E[I₀] + Σⱼ E[Iⱼ₊₁ − Iⱼ],   Iⱼ = exp(−τ marched with 2ʲ steps),   X = I₀ + (Iⱼ₊₁ − Iⱼ)/pⱼ
+//! ```text
+//! T = E[I₀] + Σⱼ E[Iⱼ₊₁ − Iⱼ],   Iⱼ = exp(−τ marched with 2ʲ steps),   X = I₀ + (Iⱼ₊₁ − Iⱼ)/pⱼ
+//! ```
 //!
 //! A march of 2ʲ⁺¹ equal steps from a random offset is two marches of 2ʲ, at its even and its odd places, so that the
 //! difference of the first from the mean of the exponentials of the two needs no more lookups and is of second order. It

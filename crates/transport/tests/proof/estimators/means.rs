@@ -2,7 +2,7 @@
 
 use tyndall_lanes::Random;
 use tyndall_scene::Scene;
-use tyndall_transport::along_ray::{AlongRay, Bounding, Control};
+use tyndall_transport::along_ray::{AlongRay, Bounding, Control, Profile};
 use tyndall_transport::{
     Lookups, MajorantUse, TransmittanceEstimator, estimate_transmittance, repeat_transmittance,
 };
@@ -92,6 +92,17 @@ fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// In a thin medium all but the first term of the p-series is drawn by roulette. At a level of 1e-3.
+#[test]
+fn the_roulette_of_the_p_series_makes_up_for_what_it_cuts() {
+    let loose = Bounding { majorant_scale: 2.0, ..WHOLE };
+    let ray = AlongRay::with_profile(Profile::Constant(0.005), 1.0, 1).with_bounding(loose);
+    let found = repeat_transmittance(TransmittanceEstimator::PSeriesCmf, &ray, 200_000, 6);
+    let z = found.z(f64::exp(-0.005));
+    assert!(z.abs() < two_sided_quantile(1e-3), "{found:?}, z = {z}");
+    assert!(found.lookups < 0.02, "{found:?}");
 }
 
 #[test]
