@@ -260,7 +260,7 @@ impl<'a> SpectralScene<'a> {
 
     /// Light of a colour in the channels, from the light of this number.
     fn light(&self, number: usize, colour: DVec3) -> DVec4 {
-        match (self.channels, &self.scene.light_spectra[number]) {
+        match (self.channels, self.scene.light_spectra.get(number).and_then(Option::as_ref)) {
             (Channels::Wavelengths(wavelengths_nm), Some(spectrum)) => {
                 let luminance = cie::luminance(colour);
                 DVec4::from_array(wavelengths_nm.map(|nm| spectrum.at(nm) * luminance))
