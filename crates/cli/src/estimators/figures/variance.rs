@@ -54,9 +54,9 @@ fn draw_kind(svg: &mut Svg, top: f64, report: &Report, kind: Kind) -> f64 {
     top + PANEL_HEIGHT
 }
 
-/// Less is rounding, more the lack of any light.
+/// Less is as good as exact, and more as good as none.
 fn shown(relative_variance: f64) -> bool {
-    (1e-14..1e14).contains(&relative_variance)
+    (1e-7..1e5).contains(&relative_variance)
 }
 
 /// (optical thickness, relative variance) in homogeneous media.
