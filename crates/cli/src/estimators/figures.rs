@@ -70,7 +70,8 @@ impl Figure {
         match self {
             Self::Variance => {
                 "Variance of a sample over the squared true value. Lines: homogeneous media under a \
-                               majorant of twice the extinction. Dots: rays of this scene."
+                               majorant of twice the extinction. Dots: rays of this scene. Left out: where a few samples \
+                               decide."
                     .into()
             }
             Self::Convergence => format!(

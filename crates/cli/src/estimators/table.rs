@@ -126,7 +126,7 @@ pub fn starred(name: &str, unbiased: bool) -> String {
 
 /// z, with a mark if its error is not well known.
 pub fn z(trial: &Trial) -> String {
-    let mark = if trial.standard_error_uncertainty > 0.3 { "?" } else { "" };
+    let mark = if trial.error_is_doubtful() { "?" } else { "" };
     match trial.z {
         Some(z) if z.abs() >= 1000.0 => format!("{}{mark}", short(z)),
         // Rounding is no deviation, and no negative one.
