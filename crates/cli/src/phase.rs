@@ -11,8 +11,9 @@ use glam::DVec3;
 use miette::{IntoDiagnostic, miette};
 use serde_json::json;
 use tyndall_optics::PhaseFunction;
-use tyndall_scene::description::phase_spec;
-use tyndall_scene::{build_phase, grey_phase};
+use tyndall_optics::mie::{MieAverage, MieCache};
+use tyndall_scene::description::{PhaseDescription, phase_spec};
+use tyndall_scene::{GREY_WAVELENGTH_NM, MieSpheres, build_phase, grey_phase, mie_spheres};
 
 use crate::output::check_writable;
 use crate::plot::Kind;
@@ -30,6 +31,8 @@ Phase functions:
   isotropic   rayleigh   hg(g=0.85)   schlick(k=0.8)   cornette-shanks(g=0.6)   draine(g=0.6,alpha=0.5)
   double-hg(g1=0.9,g2=-0.3,weight=0.8)   fog(d=10um)   tabulated(file=cloud.txt)
   sggx(kind=fibre,roughness=0.3,axis=[0,1,0])   sggx(kind=surface,roughness=0.3)
+  mie(m=1.33+1e-5i,x=10)   mie(material=water,wavelength=550nm,distribution=gamma(r_eff=10um,v_eff=0.1))
+  mie:water:10um:gamma(0.1)   (also single, log_normal, modified_gamma, power_law; ice, soot, dust, sea_salt, sulfate)
 
 Examples:
   tyndall phase hg:0.85
@@ -67,8 +70,8 @@ enum Radius {
 /// Computes, draws, prints.
 pub fn run(args: Args) -> miette::Result<()> {
     check_writable(args.output.as_deref())?;
-    let curve = |spec: &String| Ok(Curve::new(spec.trim().to_owned(), read(spec)?, args.incidence));
-    let curves = args.specs.iter().map(curve).collect::<miette::Result<Vec<_>>>()?;
+    let curves =
+        args.specs.iter().map(|spec| curve(spec, args.incidence)).collect::<miette::Result<Vec<_>>>()?;
     if args.incidence.is_some() && curves.iter().all(|curve| curve.projected_area().is_none()) {
         return Err(miette!(
             "--incidence: none of the phase functions depends on it; leave it out, or give an sggx"
@@ -90,6 +93,25 @@ pub fn run(args: Args) -> miette::Result<()> {
     answer(table(&curves, &args.angles.0))
 }
 
+fn curve(spec: &str, incidence: Option<DVec3>) -> miette::Result<Curve> {
+    let description = phase_spec::parse(spec)?;
+    let name = spec.trim().to_owned();
+    let PhaseDescription::Mie { wavelength_nm, ref m, x, .. } = description else {
+        return Ok(Curve::new(name, read(spec)?, incidence));
+    };
+    if wavelength_nm.is_none() && (m.is_none() || x.is_none()) {
+        tell(format!(
+            "note: {spec}: the wavelength is {GREY_WAVELENGTH_NM} nm; `wavelength=…nm` names another"
+        ));
+    }
+    let wavelength_nm = wavelength_nm.unwrap_or(GREY_WAVELENGTH_NM);
+    let cache = MieCache::from_environment();
+    match mie_spheres(&description, wavelength_nm, Path::new(""), &cache)? {
+        Some(spheres) => Curve::of_spheres(name, spheres).into_diagnostic(),
+        None => Ok(Curve::new(name, read(spec)?, incidence)),
+    }
+}
+
 /// The phase function of a one-line description; files it names are relative to the working folder.
 pub fn read(spec: &str) -> miette::Result<PhaseFunction> {
     let description = phase_spec::parse(spec)?;
@@ -107,6 +129,14 @@ fn object(curve: &Curve, angles: &[f64]) -> serde_json::Value {
     if let Some(area) = curve.projected_area() {
         object["projected_area"] = area.into();
     }
+    if let Some(MieSpheres { average, single }) = curve.spheres() {
+        object["q_ext"] = average.q_ext.into();
+        object["q_sca"] = average.q_sca.into();
+        object["albedo"] = average.albedo().into();
+        if let Some(sphere) = single {
+            object["q_back"] = sphere.q_back.into();
+        }
+    }
     object
 }
 
@@ -120,6 +150,15 @@ fn table(curves: &[Curve], angles: &[f64]) -> String {
     text += &line("g", &|curve| format!("{:.6}", curve.mean_cosine()));
     if curves.iter().any(|curve| curve.projected_area().is_some()) {
         text += &line("area", &|curve| format!("{:.6}", curve.projected_area().unwrap_or(1.0)));
+    }
+    let efficiencies: [(&str, fn(&MieAverage) -> f64); 2] =
+        [("q_ext", |average| average.q_ext), ("q_sca", |average| average.q_sca)];
+    for (name, efficiency) in efficiencies {
+        if curves.iter().any(|curve| curve.spheres().is_some()) {
+            text += &line(name, &|curve| {
+                curve.spheres().map_or("-".into(), |spheres| format!("{:.6}", efficiency(&spheres.average)))
+            });
+        }
     }
     text += "angle/deg  value/(1/sr)\n";
     for angle in angles {

@@ -161,7 +161,7 @@ fn scenes_that_a_meter_does_not_fit_are_refused_with_the_mend() {
         ("measure meters.toml --set volume.0.transform.rotate=[10,0,0]", ["`volume.0`", "periodic"]),
         ("measure meters.toml --set meter.0.direction=[0,1,0]", ["direction", "below 0"]),
         ("measure meters.toml --set meter.0.direction=[1,0,0]", ["direction", "below 0"]),
-        ("measure meters.toml --set meter.0.top=0", ["--set meter.0.top=0", "empty"]),
+        ("measure meters.toml --set meter.0.top=0", ["`bottom` must be less", "empty"]),
         ("measure meters.toml --set meter.0.columns=[2,2]", ["columns", "periodic"]),
         ("measure meters.toml --set meter.0.periodic=[0,0,0,1]", ["periodic", "x0 < x1"]),
         ("measure meters.toml --set meter.0.radiance=[[90,0]]", ["radiance", "90"]),

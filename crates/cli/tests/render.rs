@@ -61,6 +61,38 @@ fn merged_parts_are_the_whole_and_make_the_same_picture() {
 }
 
 #[test]
+fn estimators_are_chosen_by_name_and_take_the_reference_integrator() {
+    let folder = Folder::new();
+    folder.done("render scene.toml --integrator reference -o default.acc");
+    let run = folder
+        .run("render scene.toml --distance regular-tracking --transmittance p-series-cmf -o chosen.acc");
+    assert!(run.code == Some(0) && run.err.contains("reference integrator"), "{}", run.err);
+    let [default, chosen] = ["default.acc", "chosen.acc"].map(|name| folder.accumulation(name));
+    assert!(default.film != chosen.film);
+    assert_eq!(default.metadata.scene_hash, chosen.metadata.scene_hash);
+    assert_eq!(
+        chosen.metadata.options,
+        "integrator=reference distance=regular-tracking transmittance=p-series-cmf"
+    );
+    let biased = folder.run("render scene.toml --distance ray-marching -o biased.acc");
+    assert!(biased.code == Some(0) && biased.err.contains("biased"), "{}", biased.err);
+}
+
+#[test]
+fn estimators_that_do_not_fit_are_refused_with_the_reason() {
+    let folder = Folder::new();
+    for (options, code, word) in [
+        ("--distance equiangular", 1, "point light"),
+        ("--distance delta-tracking --integrator fast", 1, "reference"),
+        ("--transmittance nonsense", 2, "ratio-tracking"),
+    ] {
+        let run = folder.run(&format!("render scene.toml {options} -o refused.exr"));
+        assert!(run.code == Some(code) && run.err.contains(word), "{options}: {:?} {}", run.code, run.err);
+    }
+    assert!(!folder.path("refused.exr").exists());
+}
+
+#[test]
 fn pictures_of_different_size_are_not_compared() {
     let folder = Folder::new();
     folder.done("render scene.toml -o a.exr");

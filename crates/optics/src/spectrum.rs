@@ -71,9 +71,13 @@ impl std::fmt::Display for SpectrumError {
                 write!(f, "has {wavelengths} wavelengths but {values} values: give one value for each")
             }
             Self::Order(index) => {
-                write!(f, "wavelength number {} must be above 0 and above the one before it", index + 1)
+                write!(
+                    f,
+                    "is out of order: wavelength number {} must be above 0 and above the one before it",
+                    index + 1
+                )
             }
-            Self::NotFinite(index) => write!(f, "value number {} must be finite", index + 1),
+            Self::NotFinite(index) => write!(f, "has an odd value: number {} must be finite", index + 1),
         }
     }
 }

@@ -6,17 +6,18 @@ use std::path::Path;
 use std::sync::Arc;
 use tyndall_volumes::{
     AxisOrder, BrickGrid, ByteOrder, Element, Filter, Grid, GridClass, GridSelection, GridValues, RawShape,
-    ReadError, ReadRequest,
+    ReadError, ReadRequest, VolumeFile,
 };
 
+use crate::build_fields::build_fields;
+use crate::build_medium::build_medium;
 use crate::description::{
-    AtmosphereShape, Coefficients, GridFilter, GridMeaning, MediumDescription, ProceduralDescription,
-    RawType, Storage, VolumeDescription, VolumeSource,
+    AtmosphereShape, GridFilter, GridMeaning, ProceduralDescription, RawType, Storage, VolumeDescription,
+    VolumeSource,
 };
 use crate::light::build_lights;
-use crate::phase::{build_phase, grey_phase};
 use crate::ready::light_probabilities;
-use crate::{Camera, Density, Medium, Observer, Scene, SceneDescription, SceneError, Volume, procedural};
+use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
 #[derive(Debug, Clone)]
@@ -39,19 +40,20 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
             name: "medium".into(),
             world_to_local: DAffine3::IDENTITY,
             density: Density::Everywhere,
-            medium: ready_medium(medium, "medium", folder, &mut notes)?,
+            medium: build_medium(medium, &description.unit, folder, 1.0, "medium")?,
+            fields: None,
         });
     }
     for (number, volume) in description.volumes.iter().enumerate() {
         let name = volume.name.clone().unwrap_or_else(|| format!("volume.{number}"));
-        volumes.push(build_volume(volume, name, folder, &mut grids, &mut notes)?);
+        volumes.push(build_volume(volume, name, &description.unit, folder, &mut grids, &mut notes)?);
     }
     // Nothing collides where there is no extinction.
-    volumes.retain(|volume| volume.medium.mu_t > 0.0);
+    volumes.retain(|volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO);
 
     let lights = build_lights(&description.lights, folder)?;
     notes.extend(lights.warnings);
-    if lights.lights.is_empty() && volumes.iter().all(|volume| volume.medium.emission == DVec3::ZERO) {
+    if lights.lights.is_empty() && !volumes.iter().any(Volume::glows) {
         notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
     }
     let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes));
@@ -61,9 +63,10 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
         resolution,
         volumes,
         lights: lights.lights,
+        light_spectra: lights.spectra,
         light_probabilities,
         max_depth: description.render.max_depth,
-        observer: Observer::Rgb,
+        observer: observers(description)[0],
     };
     Ok(BuiltScene { scene, grids, notes })
 }
@@ -71,6 +74,7 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
 fn build_volume(
     description: &VolumeDescription,
     name: String,
+    unit: &str,
     folder: &Path,
     grids: &mut Vec<(String, String)>,
     notes: &mut Vec<String>,
@@ -116,29 +120,16 @@ fn build_volume(
             "its transform is singular: it flattens the volume; give scales other than 0",
         ));
     }
-    let medium = ready_medium(&description.medium, &name, folder, notes)?;
-    Ok(Volume { name, world_to_local, density, medium })
+    let emission_scale = description.emission_scale.unwrap_or(1.0);
+    let medium = build_medium(&description.medium, unit, folder, emission_scale, &name)?;
+    let fields = build_fields(description, folder, to_scene, &name, notes)?;
+    Ok(Volume { name, world_to_local, density, medium, fields })
 }
 
 /// The density, and its local coordinates in those of the volume.
 fn grid_density(bricks: BrickGrid, grid: &Grid) -> (Density, DAffine3) {
     let to_index = DAffine3::from_translation(DVec3::splat(-bricks.filter().offset()));
     (Density::Grid(Arc::new(bricks)), grid.index_to_world * to_index)
-}
-
-fn ready_medium(
-    description: &MediumDescription,
-    name: &str,
-    folder: &Path,
-    notes: &mut Vec<String>,
-) -> Result<Medium, SceneError> {
-    let coefficients =
-        description.coefficients().map_err(|(_, message)| SceneError::file(Path::new(name), message))?;
-    let (phase_function, note) = grey_phase(&build_phase(&description.phase, folder)?);
-    notes.extend(note.map(|note| format!("{name}: {note}")));
-    let emission = description.emission.map_or(DVec3::ZERO, |emission| emission.channels());
-    let Coefficients { mu_t, albedo } = coefficients;
-    Ok(Medium { mu_t, albedo, phase_function, emission, chromatic: None })
 }
 
 /// Reads the grid that the description names, or the one that is most likely meant.
@@ -157,15 +148,7 @@ fn read_grid(
         byte_order: ByteOrder::Little,
         axis_order: AxisOrder::XFastest,
     });
-    let file = tyndall_volumes::read(path, &ReadRequest { grids, raw }).map_err(|error| {
-        if matches!(&error, ReadError::Io { error, .. } if error.kind() == std::io::ErrorKind::NotFound) {
-            let mend = "there is no such file; mend the key `file`, which is relative to the scene file";
-            return SceneError::file(path, mend);
-        }
-        let message = error.to_string();
-        let prefix = format!("{}: ", path.display());
-        SceneError::file(path, message.strip_prefix(&prefix).unwrap_or(&message))
-    })?;
+    let file = read_volume_file(path, &ReadRequest { grids, raw })?;
     let names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
     let same_name = description.grid.is_some();
     let Some(grid) = choose_density(file.grids) else {
@@ -186,6 +169,19 @@ fn read_grid(
         ));
     }
     Ok(grid)
+}
+
+/// Reads a volume file that the scene names.
+pub(crate) fn read_volume_file(path: &Path, request: &ReadRequest) -> Result<VolumeFile, SceneError> {
+    tyndall_volumes::read(path, request).map_err(|error| {
+        if matches!(&error, ReadError::Io { error, .. } if error.kind() == std::io::ErrorKind::NotFound) {
+            let mend = "there is no such file; mend the key `file`, which is relative to the scene file";
+            return SceneError::file(path, mend);
+        }
+        let message = error.to_string();
+        let prefix = format!("{}: ", path.display());
+        SceneError::file(path, message.strip_prefix(&prefix).unwrap_or(&message))
+    })
 }
 
 /// The grid that is a density by its name, by its class, or at least by its type.

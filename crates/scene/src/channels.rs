@@ -7,9 +7,10 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, DVec4};
-use tyndall_optics::{PhaseFunction, Spectrum, uplift};
+use tyndall_optics::{PhaseFunction, Spectrum, planck, uplift};
 
-use crate::{Medium, SceneDescription};
+use crate::description::{ColourMode, FilmOutput};
+use crate::{Medium, SceneDescription, Volume};
 
 /// What the channels of a path are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,8 +56,16 @@ pub enum Observer {
 /// The observers whose films make the picture of a scene: at least one, and one for each three bands. Where bands do not
 /// fill the last three, the last of them is repeated.
 pub fn observers(description: &SceneDescription) -> Vec<Observer> {
-    let _ = description;
-    vec![Observer::Rgb]
+    let bands = description.film.bands.as_deref().unwrap_or_default();
+    match (description.render.mode, description.film.output) {
+        (ColourMode::Rgb, _) => vec![Observer::Rgb],
+        (ColourMode::Spectral, _) if !bands.is_empty() => {
+            let three = |bands: &[f64]| Observer::Bands([0, 1, 2].map(|i| bands[i.min(bands.len() - 1)]));
+            bands.chunks(3).map(three).collect()
+        }
+        (ColourMode::Spectral, FilmOutput::Rgb) => vec![Observer::SpectralRgb],
+        (ColourMode::Spectral, FilmOutput::Xyz) => vec![Observer::SpectralXyz],
+    }
 }
 
 /// What a medium does to light where its density is 1, in each channel of a path.
@@ -68,6 +77,8 @@ pub struct ChannelMedium<'a> {
     pub albedo: DVec4,
     /// Emitted radiance Le.
     pub emission: DVec4,
+    /// Radiance added per length, 1/scene unit.
+    pub emission_per_length: DVec4,
     /// The phase functions.
     pub phases: ChannelPhases<'a>,
 }
@@ -131,13 +142,29 @@ impl Medium {
             mu_t: mu_t.extend(0.0),
             albedo: self.albedo.extend(0.0),
             emission: self.emission.extend(0.0),
+            emission_per_length: self.emission_per_length.extend(0.0),
             phases,
         }
     }
 
-    /// Colours become spectra that have them.
+    /// Where only colours are known, they become spectra that have them.
     fn at_wavelengths(&self, wavelengths_nm: [f64; 4]) -> ChannelMedium<'_> {
-        let at = |spectrum: &Spectrum| DVec4::from_array(wavelengths_nm.map(|nm| spectrum.at(nm)));
+        let each = |value: &dyn Fn(f64) -> f64| DVec4::from_array(wavelengths_nm.map(value));
+        if let Some(spectra) = self.spectra.as_deref() {
+            let phases = if spectra.phase.is_grey() {
+                ChannelPhases::Same(&self.phase_function)
+            } else {
+                ChannelPhases::Each(wavelengths_nm.map(|nm| Cow::Owned(spectra.phase.at(nm))))
+            };
+            return ChannelMedium {
+                mu_t: each(&|nm| spectra.coefficients.mu_t(nm)),
+                albedo: each(&|nm| spectra.coefficients.albedo(nm)),
+                emission: each(&|nm| spectra.emission.at(nm)),
+                emission_per_length: each(&|nm| spectra.emission_per_length.at(nm)),
+                phases,
+            };
+        }
+        let at = |spectrum: &Spectrum| each(&|nm| spectrum.at(nm));
         let phases = self.phases(|phase_functions| {
             wavelengths_nm.map(|nm| &phase_functions[uplift::basis(nm).max_position()])
         });
@@ -149,6 +176,7 @@ impl Medium {
             mu_t,
             albedo: at(&Spectrum::Rgb(self.albedo)),
             emission: at(&Spectrum::RgbLight(self.emission)),
+            emission_per_length: at(&Spectrum::RgbLight(self.emission_per_length)),
             phases,
         }
     }
@@ -163,5 +191,32 @@ impl Medium {
             Some(phase_functions) => ChannelPhases::Each(choose(phase_functions).map(Cow::Borrowed)),
             None => ChannelPhases::Same(&self.phase_function),
         }
+    }
+}
+
+impl Volume {
+    /// Albedo and emitted radiance Le at a place, in channels in which the volume's medium is `medium`.
+    pub fn colours_at(&self, position: DVec3, medium: &ChannelMedium, channels: &Channels) -> (DVec4, DVec4) {
+        let Some(fields) = &self.fields else { return (medium.albedo, medium.emission) };
+        let factor = self.albedo_factor(position);
+        let kelvin =
+            fields.temperature.as_ref().map(|temperature| (temperature, temperature.kelvin(position)));
+        let (factor, glow) = match channels {
+            Channels::Rgb => {
+                let glow = kelvin.map(|(field, kelvin)| field.colours.at(kelvin) * field.radiance_scale);
+                (factor.extend(0.0), glow.unwrap_or_default().extend(0.0))
+            }
+            Channels::Wavelengths(wavelengths_nm) => {
+                let glow = |nm| {
+                    kelvin.map_or(0.0, |(field, kelvin)| planck::radiance(nm, kelvin) * field.radiance_scale)
+                };
+                let factor = Spectrum::Rgb(factor);
+                (
+                    DVec4::from_array(wavelengths_nm.map(|nm| factor.at(nm))),
+                    DVec4::from_array(wavelengths_nm.map(glow)),
+                )
+            }
+        };
+        (medium.albedo * factor, (medium.emission + glow) * self.emission_factor(position))
     }
 }

@@ -35,7 +35,7 @@ impl SceneError {
         Self::from(Problem {
             file: file.display().to_string(),
             position: None,
-            message: message.into(),
+            message: one_line(message),
             source: None,
         })
     }
@@ -61,15 +61,20 @@ impl Problem {
         Self {
             file: text.name().to_owned(),
             position: Some((line, column)),
-            message: message.into(),
+            message: one_line(message),
             source: Some((Arc::clone(text), span)),
         }
     }
 
     /// A problem with a `--set` option, shown without a position: the option is one line.
     pub(crate) fn option(option: &str, message: impl Into<String>) -> Self {
-        Self { file: option.to_owned(), position: None, message: message.into(), source: None }
+        Self { file: option.to_owned(), position: None, message: one_line(message), source: None }
     }
+}
+
+/// Messages quote what the file says, which may hold line breaks as escapes.
+fn one_line(message: impl Into<String>) -> String {
+    message.into().replace(char::is_control, " ")
 }
 
 impl From<Problem> for SceneError {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::description::{LightDescription, RenderDescription, SceneDescription};
+use crate::description::{LightDescription, PhaseDescription, RenderDescription, SceneDescription};
 use crate::error::SceneError;
 
 /// The first 128 bits of a SHA-256 over everything that determines the expected picture.
@@ -21,25 +21,35 @@ impl fmt::Display for SceneHash {
 
 /// Hash of a scene whose file names are relative to `folder`.
 ///
-/// It covers the camera, the resolution, `max_depth`, media, volumes, lights and the bytes of the files they
-/// name. It leaves out what does not change the expected picture: where the files are, names, unit, comments,
-/// samples per pixel, seed, integrator, exposure, layers and meters.
+/// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
+/// lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
+/// are, names, the unit (unless media are given in physical units), comments, samples per pixel, seed, integrator,
+/// exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
-    canonical.unit.clear();
+    // Only what is given in physical units depends on it.
+    if !canonical.media().any(|medium| medium.preset.is_some()) {
+        canonical.unit.clear();
+    }
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
     canonical.meters.clear();
-    canonical.render =
-        RenderDescription { max_depth: description.render.max_depth, ..RenderDescription::default() };
+    let RenderDescription { max_depth, mode, .. } = description.render;
+    canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     let media =
         canonical.medium.iter_mut().chain(canonical.volumes.iter_mut().map(|volume| &mut volume.medium));
-    for file in media.filter_map(|medium| medium.phase.file_mut()) {
+    let phases = media.filter_map(|medium| medium.phase.as_mut());
+    for file in phases.filter_map(PhaseDescription::file_mut) {
         *file = content_hash(&folder.join(&file))?;
     }
     for volume in &mut canonical.volumes {
         volume.name = None;
-        if let Some(file) = &mut volume.file {
+        let of_fields = [
+            volume.emission_grid.as_mut().map(|grid| &mut grid.file),
+            volume.temperature.as_mut().map(|grid| &mut grid.file),
+            volume.albedo_grid.as_mut().map(|grid| &mut grid.file),
+        ];
+        for file in of_fields.into_iter().flatten().chain([&mut volume.file]).flatten() {
             *file = content_hash(&folder.join(&file))?;
         }
     }

@@ -6,10 +6,13 @@
 #![forbid(unsafe_code)]
 
 mod build;
+mod build_fields;
+mod build_medium;
 mod camera;
 mod channels;
 pub mod description;
 mod error;
+mod fields;
 mod hash;
 pub mod light;
 mod medium;
@@ -18,6 +21,7 @@ mod phase;
 pub mod procedural;
 mod ready;
 pub mod sky;
+mod spectra;
 mod toml;
 
 pub use self::build::{BuiltScene, build, choose_density};
@@ -25,10 +29,12 @@ pub use self::camera::{Camera, Ray};
 pub use self::channels::{ChannelMedium, ChannelPhases, Channels, Observer, observers};
 pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
+pub use self::fields::{Field, Fields, TemperatureField};
 pub use self::hash::{SceneHash, scene_hash};
 pub use self::light::{Light, LightSample};
 pub use self::medium::{ChromaticMedium, Density, Medium, Volume};
-pub use self::mie::mie_average;
-pub use self::phase::{build_phase, build_phase_with, grey_phase};
+pub use self::mie::{MieSpheres, mie_spheres};
+pub use self::phase::{GREY_WAVELENGTH_NM, build_phase, build_phase_with, grey_phase};
 pub use self::ready::Scene;
+pub use self::spectra::{MediumPhase, MediumSpectra, SpectralCoefficients};
 pub use self::toml::{SceneDocument, json_schema};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use tyndall_optics::PhaseFunction;
 use tyndall_volumes::BrickGrid;
 
-use crate::Ray;
+use crate::{Fields, MediumSpectra, Ray};
 
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +19,12 @@ pub struct Medium {
     pub phase_function: PhaseFunction,
     /// Emitted radiance Le; the source term of the volume rendering equation is μa·Le.
     pub emission: DVec3,
+    /// Radiance added per length, 1/scene unit, independent of absorption.
+    pub emission_per_length: DVec3,
     /// What depends on colour beside albedo and emission; it takes the place of `mu_t` and `phase_function`.
     pub chromatic: Option<Arc<ChromaticMedium>>,
+    /// The same by wavelength; media made in code may lack it.
+    pub spectra: Option<Arc<MediumSpectra>>,
 }
 
 /// What of a medium depends on colour, beside its albedo and emission.
@@ -33,6 +37,19 @@ pub struct ChromaticMedium {
 }
 
 impl Medium {
+    /// A grey medium that does not glow.
+    pub fn grey(mu_t: f64, albedo: f64, phase_function: PhaseFunction) -> Medium {
+        Medium {
+            mu_t,
+            albedo: DVec3::splat(albedo),
+            phase_function,
+            emission: DVec3::ZERO,
+            emission_per_length: DVec3::ZERO,
+            chromatic: None,
+            spectra: None,
+        }
+    }
+
     /// Extinction coefficient for light that travels along the unit vector `direction`, or against it.
     pub fn mu_t_along(&self, direction: DVec3) -> f64 {
         self.mu_t * self.phase_function.projected_area(direction)
@@ -85,6 +102,8 @@ pub struct Volume {
     pub density: Density,
     /// The coefficients at density 1.
     pub medium: Medium,
+    /// What varies beside the density.
+    pub fields: Option<Arc<Fields>>,
 }
 
 impl Volume {
@@ -115,6 +134,15 @@ impl Volume {
         };
         let (enter, leave) = (enter.max(0.0), leave.min(end));
         (enter < leave).then_some((enter, leave))
+    }
+
+    /// The density at a place inside it, in local coordinates.
+    pub fn density_at(&self, local: DVec3) -> f64 {
+        match &self.density {
+            Density::Grid(grid) => grid.value(local),
+            Density::Atmosphere { bottom, scale_height, .. } => (-(local.y - bottom) / scale_height).exp(),
+            Density::Everywhere | Density::Box { .. } | Density::Sphere | Density::Slab { .. } => 1.0,
+        }
     }
 
     /// ∫ density along the local ray between two distances inside the density, in closed form; `None` for a grid.
@@ -211,7 +239,7 @@ impl Exponential {
 }
 
 /// Slab method; a ray in the plane of a face is inside.
-fn box_interval(ray: &Ray, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
+pub(crate) fn box_interval(ray: &Ray, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
@@ -250,14 +278,8 @@ mod tests {
     use super::*;
 
     fn homogeneous(density: Density, world_to_local: DAffine3) -> Volume {
-        let medium = Medium {
-            mu_t: 1.0,
-            albedo: DVec3::ONE,
-            phase_function: PhaseFunction::Isotropic,
-            emission: DVec3::ZERO,
-            chromatic: None,
-        };
-        Volume { name: "test".into(), world_to_local, density, medium }
+        let medium = Medium::grey(1.0, 1.0, PhaseFunction::Isotropic);
+        Volume { name: "test".into(), world_to_local, density, medium, fields: None }
     }
 
     fn interval(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {

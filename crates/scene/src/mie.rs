@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::path::Path;
-use tyndall_optics::mie::{MieAverage, MieCache, MieError, SizeLaw};
+use tyndall_optics::mie::{MieAverage, MieCache, MieError, SizeLaw, Sphere};
 use tyndall_optics::{PhaseFunction, RefractiveIndexTable, SpectralPhase, Substance};
 
 use crate::SceneError;
@@ -14,34 +14,42 @@ pub(crate) const BLUE_GREEN_RED_NM: [f64; 3] = [465.0, 550.0, 610.0];
 /// A longer file is no table of a refractive index.
 const GREATEST_TABLE: u64 = 4 << 20;
 
-/// Properties of the spheres of a `mie` phase function at a wavelength in nm; none of other phase functions. A table's
-/// file name is relative to `folder`.
-pub fn mie_average(
+/// What the spheres of a `mie` phase function do to light of one wavelength.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MieSpheres {
+    /// The mean sphere.
+    pub average: MieAverage,
+    /// The sphere, if all are alike: its phase function is exact, not a table.
+    pub single: Option<Sphere>,
+}
+
+/// The spheres of a `mie` phase function at a wavelength in nm; none of other phase functions. A table's file name is
+/// relative to `folder`.
+pub fn mie_spheres(
     phase: &PhaseDescription,
     wavelength_nm: f64,
     folder: &Path,
     cache: &MieCache,
-) -> Result<Option<MieAverage>, SceneError> {
+) -> Result<Option<MieSpheres>, SceneError> {
     let PhaseDescription::Mie { material, m, material_file, distribution, x, .. } = phase else {
         return Ok(None);
     };
-    let choice = substance(*material, m.as_ref(), material_file.as_deref())
-        .map_err(|(_, message)| SceneError::file(Path::new("mie"), message))?;
+    let refuse = |message: String| SceneError::file(Path::new("mie"), message);
+    let choice =
+        substance(*material, m.as_ref(), material_file.as_deref()).map_err(|(_, text)| refuse(text))?;
     let index = build_substance(&choice, folder)?.refractive_index(wavelength_nm).map_err(mie_error)?;
-    let average = match (distribution, x) {
-        (Some(distribution), _) => {
-            let distribution =
-                distribution.value().map_err(|(_, message)| SceneError::file(Path::new("mie"), message))?;
-            cache.average(index, wavelength_nm, &distribution)
-        }
-        // At a wavelength of 2π µm the radius in µm is the size parameter.
-        (None, Some(x)) => cache.average(index, TAU * 1e3, &SizeLaw::Single { r: *x }.into()),
-        (None, None) => {
-            let message = "the spheres have no size: give `distribution` or `x`";
-            return Err(SceneError::file(Path::new("mie"), message));
-        }
+    // At a wavelength of 2π µm the radius in µm is the size parameter.
+    let (distribution, wavelength) = match (distribution, x) {
+        (Some(distribution), _) => (distribution.value().map_err(|(_, text)| refuse(text))?, wavelength_nm),
+        (None, Some(x)) => (SizeLaw::Single { r: *x }.into(), TAU * 1e3),
+        (None, None) => return Err(refuse("the spheres have no size: give `distribution` or `x`".into())),
     };
-    average.map(Some).map_err(mie_error)
+    let single = match distribution.law {
+        SizeLaw::Single { r } => Some(Sphere::new(index, TAU * r / (wavelength * 1e-3)).map_err(mie_error)?),
+        _ => None,
+    };
+    let average = cache.average(index, wavelength, &distribution).map_err(mie_error)?;
+    Ok(Some(MieSpheres { average, single }))
 }
 
 /// The phase functions of particles that have `average` at each of some wavelengths in nm.

@@ -1,4 +1,4 @@
-//! From the description of a phase function to the phase function, for all wavelengths and for the grey view.
+//! From the description of a phase function to the phase function, for all wavelengths.
 
 use glam::DVec3;
 use std::path::Path;
@@ -8,10 +8,10 @@ use tyndall_optics::{PhaseFunction, SpectralPhase};
 
 use crate::SceneError;
 use crate::description::{PhaseDescription, SggxShape};
-use crate::mie::{BLUE_GREEN_RED_NM, mie_average, phase_of_each};
+use crate::mie::{BLUE_GREEN_RED_NM, mie_spheres, phase_of_each};
 
 /// Wavelength, in nm, that stands for all where a picture has no wavelengths.
-const GREY_WAVELENGTH_NM: f64 = 550.0;
+pub const GREY_WAVELENGTH_NM: f64 = 550.0;
 
 /// The phase function over wavelength; a table's file name is relative to `folder`, and Lorenz-Mie theory is kept in the
 /// cache that the environment names.
@@ -58,8 +58,10 @@ pub fn build_phase_with(
             let one = wavelength_nm.or(is_grey.then_some(GREY_WAVELENGTH_NM));
             let wavelengths_nm = one.map_or(BLUE_GREEN_RED_NM.to_vec(), |nm| vec![nm]);
             return phase_of_each(&wavelengths_nm, |nm| {
-                let average = mie_average(description, nm, folder, cache)?;
-                average.ok_or_else(|| SceneError::file(Path::new("mie"), "is no phase function of spheres"))
+                let spheres = mie_spheres(description, nm, folder, cache)?;
+                spheres
+                    .map(|spheres| spheres.average)
+                    .ok_or_else(|| SceneError::file(Path::new("mie"), "is no phase function of spheres"))
             });
         }
     };

@@ -1,6 +1,7 @@
 //! A scene ready to trace.
 
 use glam::DVec3;
+use tyndall_optics::Spectrum;
 
 use crate::light::Light;
 use crate::{Camera, Observer, Volume};
@@ -16,6 +17,9 @@ pub struct Scene {
     pub volumes: Vec<Volume>,
     /// Lights.
     pub lights: Vec<Light>,
+    /// For each light its spectrum at luminance 1, if that is not the one of its red, green and blue: at a wavelength the
+    /// light is the spectrum times the luminance of what it shines in RGB.
+    pub light_spectra: Vec<Option<Spectrum>>,
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
     /// well by themselves, and sums to 1 unless it is 0 for all.
     pub light_probabilities: Vec<f64>,
@@ -38,13 +42,18 @@ impl Scene {
 
     /// The light for next-event estimation at `u` in [0, 1), and the probability with which it was drawn.
     pub fn choose_light(&self, u: f64) -> Option<(&Light, f64)> {
+        self.choose_light_number(u).map(|(number, probability)| (&self.lights[number], probability))
+    }
+
+    /// The same by the light's number.
+    pub fn choose_light_number(&self, u: f64) -> Option<(usize, f64)> {
         let mut rest = u;
         let mut last = None;
-        for (light, &probability) in self.lights.iter().zip(&self.light_probabilities) {
+        for (number, &probability) in self.light_probabilities.iter().enumerate() {
             if probability <= 0.0 {
                 continue;
             }
-            last = Some((light, probability));
+            last = Some((number, probability));
             if rest < probability {
                 break;
             }
@@ -122,6 +131,7 @@ mod tests {
             camera,
             resolution: [1, 1],
             volumes: vec![],
+            light_spectra: vec![None; lights.len()],
             lights,
             light_probabilities,
             max_depth: None,

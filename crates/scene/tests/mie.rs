@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tyndall_optics::mie::MieCache;
 use tyndall_scene::description::{PhaseDescription, phase_spec};
-use tyndall_scene::{SceneDocument, SceneError, build_phase_with, mie_average};
+use tyndall_scene::{SceneDocument, SceneError, build_phase_with, mie_spheres};
 
 fn parse(line: &str) -> PhaseDescription {
     phase_spec::parse(line).unwrap_or_else(|error| panic!("{error}"))
@@ -16,7 +16,7 @@ fn read(table: &str) -> Result<PhaseDescription, SceneError> {
          medium = {{ mu_t = 1, albedo = 1, phase = {table} }}"
     );
     let description = SceneDocument::parse("scene.toml", &text)?.description()?;
-    Ok(description.medium.unwrap().phase)
+    Ok(description.medium.unwrap().phase.unwrap())
 }
 
 #[test]
@@ -114,10 +114,10 @@ fn the_phase_function_is_that_of_the_spheres_at_each_colour() {
     let haze = build("mie:water:0.2um:lognormal(1.4)");
     assert_eq!(haze.wavelengths_nm(), [465.0, 550.0, 610.0]);
     let description = parse("mie:water:0.2um:lognormal(1.4)");
-    let green = mie_average(&description, 550.0, Path::new(""), &cache).unwrap().unwrap();
+    let green = mie_spheres(&description, 550.0, Path::new(""), &cache).unwrap().unwrap().average;
     assert!((haze.at(550.0).mean_cosine() - green.g).abs() < 1e-4 && green.q_ext > 0.5);
     assert!(haze.at(465.0).value_at_cosine(1.0) > haze.at(610.0).value_at_cosine(1.0));
-    assert!(mie_average(&PhaseDescription::Rayleigh, 550.0, Path::new(""), &cache).unwrap().is_none());
+    assert!(mie_spheres(&PhaseDescription::Rayleigh, 550.0, Path::new(""), &cache).unwrap().is_none());
 }
 
 #[test]

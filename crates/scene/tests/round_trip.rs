@@ -40,6 +40,36 @@ fn rgb(least: f64, most: f64) -> impl Strategy<Value = Rgb> {
     prop_oneof![value().prop_map(Rgb::Grey), [value(), value(), value()].prop_map(Rgb::Channels)]
 }
 
+fn samples(most: f64) -> impl Strategy<Value = SpectrumDescription> {
+    proptest::collection::vec(within(0.0, most), 1..4).prop_map(|values| {
+        let wavelengths = (0..values.len()).map(|n| 400.0 + 33.25 * n as f64).collect();
+        let table =
+            SpectrumTable { wavelengths: Some(wavelengths), values: Some(values), ..Default::default() };
+        SpectrumDescription::Table(table)
+    })
+}
+
+fn colours(most: f64) -> impl Strategy<Value = SpectrumDescription> {
+    let value = move || within(0.0, most);
+    prop_oneof![
+        value().prop_map(SpectrumDescription::Grey),
+        [value(), value(), value()].prop_map(SpectrumDescription::Channels),
+        samples(most),
+    ]
+}
+
+fn light_colours() -> impl Strategy<Value = SpectrumDescription> {
+    let body = (within(200.0, 1e6), of(positive())).prop_map(|(kelvin, luminance)| {
+        let table = SpectrumTable { blackbody: Some(kelvin), luminance, ..Default::default() };
+        SpectrumDescription::Table(table)
+    });
+    let power = (within(-20.0, 20.0), within(100.0, 1e3)).prop_map(|(power_law, at)| {
+        let (power_law, at, value) = (Some(power_law), Some(at), Some(1.0));
+        SpectrumDescription::Table(SpectrumTable { power_law, at, value, ..Default::default() })
+    });
+    prop_oneof![colours(1e6), body, power]
+}
+
 fn words() -> impl Strategy<Value = String> {
     "[a-zA-Z0-9_ ./\\\\\"'#=µ\\n\\t\u{7f}\u{0}-]{0,20}"
 }
@@ -63,34 +93,54 @@ fn film_and_render() -> impl Strategy<Value = (FilmDescription, RenderDescriptio
         vec![Layer::StandardError, Layer::SampleCount, Layer::Depth, Layer::Albedo, Layer::Multiple],
         0..5,
     ));
-    let film = ([1_u32..=65536, 1..=65536], within(-100.0, 100.0), layers)
-        .prop_map(|(resolution, exposure, layers)| FilmDescription { resolution, exposure, layers });
+    let film = ([1_u32..=65536, 1..=65536], within(-100.0, 100.0), layers).prop_map(
+        |(resolution, exposure, layers)| FilmDescription {
+            resolution,
+            exposure,
+            layers,
+            ..Default::default()
+        },
+    );
     let integrator = prop_oneof![Just(Integrator::Fast), Just(Integrator::Reference)];
     let render = (1_u32.., any::<u32>(), of(any::<u32>()), integrator).prop_map(
-        |(spp, seed, max_depth, integrator)| RenderDescription { spp, seed, max_depth, integrator },
+        |(spp, seed, max_depth, integrator)| RenderDescription {
+            spp,
+            seed,
+            max_depth,
+            integrator,
+            mode: ColourMode::Spectral,
+        },
     );
     (film, render)
 }
 
 fn medium() -> impl Strategy<Value = MediumDescription> {
+    let none = MediumDescription::default;
     let coefficients = prop_oneof![
-        (positive(), rgb(0.0, 1.0)).prop_map(|(mu_t, albedo)| MediumDescription {
-            mu_t: Some(mu_t),
+        (light_colours_without_bodies(), colours(1.0)).prop_map(move |(mu_t, albedo)| {
+            MediumDescription { mu_t: Some(mu_t), albedo: Some(albedo), ..none() }
+        }),
+        (positive(), colours(1.0)).prop_map(move |(path, albedo)| MediumDescription {
+            mean_free_path: Some(path.into()),
             albedo: Some(albedo),
-            ..Default::default()
+            ..none()
         }),
-        (positive(), rgb(0.0, 1.0)).prop_map(|(path, albedo)| MediumDescription {
-            mean_free_path: Some(path),
-            albedo: Some(albedo),
-            ..Default::default()
+        (positive(), rgb(0.0, 1.0)).prop_map(move |(path, reflectance)| MediumDescription {
+            mean_free_path: Some(path.into()),
+            reflectance: Some(match reflectance {
+                Rgb::Grey(grey) => grey.into(),
+                Rgb::Channels(channels) => channels.into(),
+            }),
+            ..none()
         }),
-        (positive(), positive()).prop_map(|(mu_a, mu_s)| MediumDescription {
-            mu_a: Some(Rgb::Grey(mu_a)),
-            mu_s: Some(Rgb::Channels([mu_s; 3])),
-            ..Default::default()
+        (colours(1e6), colours(1e6)).prop_map(move |(mu_a, mu_s)| MediumDescription {
+            mu_a: Some(mu_a),
+            mu_s: Some(mu_s),
+            ..none()
         }),
+        Just(MediumDescription { preset: Some("White Zinfandel".into()), ..none() }),
     ];
-    let phase = prop_oneof![
+    let phase = of(prop_oneof![
         Just(PhaseDescription::Isotropic),
         Just(PhaseDescription::Rayleigh),
         within(-0.999, 0.999).prop_map(|g| PhaseDescription::Hg { g }),
@@ -107,12 +157,24 @@ fn medium() -> impl Strategy<Value = MediumDescription> {
         }),
         (words(), of(within(1.0, 2000.0)))
             .prop_map(|(file, wavelength_nm)| PhaseDescription::Tabulated { file, wavelength_nm }),
-    ];
-    (coefficients, phase, of(rgb(0.0, 1e6))).prop_map(|(medium, phase, emission)| MediumDescription {
-        phase,
-        emission,
-        ..medium
-    })
+    ]);
+    (coefficients, phase, of(light_colours()), of(colours(9.0)), of(within(1e-3, 1e3))).prop_map(
+        |(medium, phase, emission, emission_per_length, scale)| MediumDescription {
+            phase,
+            emission,
+            emission_per_length,
+            scale,
+            ..medium
+        },
+    )
+}
+
+/// Extinctions above 0.
+fn light_colours_without_bodies() -> impl Strategy<Value = SpectrumDescription> {
+    prop_oneof![
+        positive().prop_map(SpectrumDescription::Grey),
+        [positive(), positive(), positive()].prop_map(SpectrumDescription::Channels),
+    ]
 }
 
 fn transform() -> impl Strategy<Value = TransformDescription> {
@@ -175,21 +237,22 @@ fn light() -> impl Strategy<Value = LightDescription> {
             ..Default::default()
         });
     prop_oneof![
-        rgb(0.0, 1e9).prop_map(|radiance| LightDescription::Constant(ConstantLightDescription { radiance })),
+        light_colours()
+            .prop_map(|radiance| LightDescription::Constant(ConstantLightDescription { radiance })),
         (words(), number(), positive()).prop_map(|(file, rotation, scale)| {
             let filter = ImageFilter::Nearest;
             LightDescription::Image(ImageLightDescription { file, rotation, scale, filter })
         }),
         sky.prop_map(LightDescription::Sky),
-        (direction(), rgb(0.0, 1e9), within(1e-3, 90.0)).prop_map(
+        (direction(), light_colours(), within(1e-3, 90.0)).prop_map(
             |(direction, irradiance, angular_diameter)| {
                 LightDescription::Sun(SunLightDescription { direction, irradiance, angular_diameter })
             }
         ),
-        (direction(), rgb(0.0, 1e9)).prop_map(|(direction, irradiance)| {
+        (direction(), light_colours()).prop_map(|(direction, irradiance)| {
             LightDescription::Distant(DistantLightDescription { direction, irradiance })
         }),
-        (vector(), rgb(0.0, 1e9)).prop_map(|(position, intensity)| {
+        (vector(), light_colours()).prop_map(|(position, intensity)| {
             LightDescription::Point(PointLightDescription { position, intensity })
         }),
     ]
@@ -230,13 +293,13 @@ fn scene() -> impl Strategy<Value = SceneDescription> {
         words(),
         camera(),
         film_and_render(),
-        of(medium()),
+        of(medium().prop_map(|medium| MediumDescription { emission_per_length: None, ..medium })),
         proptest::collection::vec(volume(), 0..3),
         proptest::collection::vec(light(), 0..3),
         proptest::collection::vec(meter(), 0..3),
     )
         .prop_map(|(unit, camera, (film, render), medium, volumes, lights, meters)| SceneDescription {
-            unit,
+            unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
             camera,
             film,
             render,
@@ -341,12 +404,21 @@ fn the_hash_tells_scenes_apart_that_differ_in_what_is_seen() {
         "volume.0.file=other.vdb",
         "volume.0.mu_t=8.0000001",
         "render.max_depth=3",
+        "render.mode=spectral",
+        "volume.0.emission={ blackbody = 3000 }",
+        "volume.0.scale=2",
         "film.resolution=[1280, 721]",
         "light.0.radiance=2",
         "camera.position=[0, 1.5, 6]",
     ] {
         assert_ne!(hash(different), plain, "{different}");
     }
+    let with_preset = |unit: &str| {
+        let text = EXAMPLE.replace("mu_t = 8\nalbedo = [0.99, 0.98, 0.97]", "preset = \"coke\"");
+        let description = read(&text.replace("unit = \"m\"", &format!("unit = \"{unit}\"")));
+        scene_hash(&description, folder.path()).unwrap()
+    };
+    assert_ne!(with_preset("m"), with_preset("cm"));
     // The hash is part of files that are merged later: it must not change by accident.
     assert_eq!(plain.to_string().len(), 32);
 }

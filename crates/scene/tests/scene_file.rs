@@ -1,6 +1,6 @@
 //! Scene files: what is read, and what is said of files that are wrong.
 
-use tyndall_scene::description::{Integrator, Layer, LightDescription, PhaseDescription, Rgb, VolumeSource};
+use tyndall_scene::description::{Integrator, Layer, LightDescription, PhaseDescription, VolumeSource};
 use tyndall_scene::{SceneDescription, SceneDocument, SceneError};
 
 fn read(text: &str) -> Result<SceneDescription, SceneError> {
@@ -73,11 +73,11 @@ fn a_full_scene_is_read() {
     assert_eq!(scene.camera.direction, Some([0.0, 0.0, -1.0]));
     assert_eq!(scene.film.layers, Some(vec![Layer::Depth, Layer::StandardError]));
     assert_eq!(scene.render.integrator, Integrator::Reference);
-    assert_eq!(scene.medium.as_ref().unwrap().coefficients().unwrap().mu_t, 1.0);
+    assert_eq!(scene.medium.as_ref().unwrap().coefficients("km", 0.0).unwrap().mu_t_rgb().x, 1.0);
     assert_eq!(scene.volumes[0].source(), Ok(VolumeSource::File("cloud.vdb")));
-    assert_eq!(scene.volumes[0].medium.coefficients().unwrap().mu_t, 2.0);
-    assert_eq!(scene.volumes[0].medium.phase, PhaseDescription::Hg { g: 0.85 });
-    assert_eq!(scene.volumes[0].medium.emission, Some(Rgb::Channels([1.0, 0.5, 0.0])));
+    assert_eq!(scene.volumes[0].medium.coefficients("km", 0.0).unwrap().mu_t_rgb().x, 2.0);
+    assert_eq!(scene.volumes[0].medium.phase, Some(PhaseDescription::Hg { g: 0.85 }));
+    assert_eq!(scene.volumes[0].medium.emission, Some([1.0, 0.5, 0.0].into()));
     assert!(matches!(scene.volumes[2].source(), Ok(VolumeSource::Procedural(_))));
     assert!(
         matches!(&scene.lights[0], LightDescription::Sky(sky) if sky.sun_elevation == Some(30.0) && sky.sun)
@@ -117,7 +117,72 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 'white'"),
-            "scene.toml:7:10: `albedo` must be a number from 0 to 1 or an array of 3 numbers from 0 to 1, not a string",
+            "scene.toml:7:10: `albedo` must be a number from 0 to 1 or an array of 3 numbers from 0 to 1 or a table, not a string",
+        ),
+        (
+            format!("{volume}mu_t = {{ wavelengths = [400, 500], values = [1] }}\nalbedo = 1"),
+            "scene.toml:6:10: `mu_t`: the spectrum has 2 wavelengths but 1 values: give one value for each",
+        ),
+        (
+            format!("{volume}mu_t = {{ wavelengths = [500, 400], values = [1, 1] }}\nalbedo = 1"),
+            "scene.toml:6:10: `mu_t`: the spectrum is out of order: wavelength number 2 must be above 0 and above the one before it",
+        ),
+        (
+            format!("{volume}mu_t = {{ wavelength = [500], values = [1] }}\nalbedo = 1"),
+            "scene.toml:6:10: unknown key `wavelength` in `mu_t`, did you mean `wavelengths`?",
+        ),
+        (
+            format!("{volume}mu_t = {{ blackbody = 3000 }}\nalbedo = 1"),
+            "scene.toml:6:10: `mu_t`: a black body is light and no coefficient: give `wavelengths` and `values`",
+        ),
+        (
+            format!("{volume}mu_t = 1\nalbedo = {{ wavelengths = [500, 600], values = [1, 2] }}"),
+            "scene.toml:7:38: `albedo`: the `values` must be numbers from 0 to 1",
+        ),
+        (
+            format!("{volume}mu_t = 1\nalbedo = 1\nemission = {{ blackbody = 3000, value = 1 }}"),
+            "scene.toml:8:1: `emission`: the spectrum is given in several ways: give `wavelengths` with `values`, or \
+             `blackbody`, or `power_law` with `at` and `value`",
+        ),
+        (
+            format!("{volume}preset = 'Whole milk'\nmu_t = 2"),
+            "scene.toml:6:1: the coefficients are given as `mu_t` and `preset`: give exactly one of the pairs `mu_t` + \
+             `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`",
+        ),
+        (
+            format!("{volume}preset = 'Hole milk'"),
+            "scene.toml:6:1: there is no measured medium `Hole milk`, did you mean `Wholemilk`?",
+        ),
+        (
+            format!("{volume}mu_t = 2\nalbedo = 1\nscale = 1e30"),
+            "scene.toml:8:1: the extinction becomes 2e30: numbers beyond 1e30 are not computed with",
+        ),
+        (
+            format!("{volume}mu_t = 1\nalbedo = 1\nemission = 1\ntemperature = {{}}"),
+            "scene.toml:8:1: the volume glows by both `emission` and `temperature`: keep one",
+        ),
+        (
+            format!("{volume}mu_t = 1\nalbedo = 1\nemission_grid = {{}}"),
+            "scene.toml:8:1: `emission_grid` multiplies what is not there: give `emission`, `emission_per_length` or \
+             `temperature`",
+        ),
+        (
+            "[[volume]]\nsphere = { center = [0, 0, 0], radius = 1 }\nmu_t = 1\nalbedo = 1\ntemperature = {}"
+                .into(),
+            "scene.toml:8:1: `temperature` needs a `file`: the volume itself is from none",
+        ),
+        (
+            "[medium]\nmu_t = [0, 1, 1]\nalbedo = 1\nemission_per_length = 1".into(),
+            "scene.toml:7:1: a medium that fills all space and does not weaken light would shine without end: give it an \
+             extinction above 0",
+        ),
+        (
+            "[film]\nbands = [450, 550]".into(),
+            "scene.toml:5:1: `bands` is computed from wavelengths: give `mode = \"spectral\"` in [render]",
+        ),
+        (
+            "[film]\noutput = 'xyz'".into(),
+            "scene.toml:5:1: `output` is computed from wavelengths: give `mode = \"spectral\"` in [render]",
         ),
         (format!("{volume}mu_t = nan\nalbedo = 1"), "scene.toml:6:8: `mu_t` must be finite, not NaN"),
         (
@@ -139,17 +204,12 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         (
             format!("{volume}mu_t = 1"),
             "scene.toml:4:1: `mu_t` alone does not say the coefficients: give exactly one of the pairs \
-             `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mu_a` + `mu_s`",
+             `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`",
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 1\nmu_a = 1"),
             "scene.toml:8:1: the coefficients are given as `mu_t` and `albedo` and `mu_a`: give exactly one of the \
-             pairs `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mu_a` + `mu_s`",
-        ),
-        (
-            format!("{volume}mu_a = 1\nmu_s = [1, 2, 3]"),
-            "scene.toml:7:1: `mu_a` + `mu_s` is 2, 3, 4 in red, green, blue: extinction that depends on colour is \
-             not rendered yet; make the sum equal in all channels",
+             pairs `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`",
         ),
         (
             "[[volume]]\nmu_t = 1\nalbedo = 1".to_owned(),
@@ -304,7 +364,7 @@ fn options_change_the_scene() {
     let scene = document.description().unwrap();
     assert_eq!(scene.camera.vertical_fov, 30.0);
     assert_eq!(scene.camera.position, [1.0, 2.0, 3.0]);
-    assert_eq!(scene.volumes[0].medium.mu_t, Some(3.0));
+    assert_eq!(scene.volumes[0].medium.mu_t, Some(3.0.into()));
     assert_eq!(scene.render.integrator, Integrator::Reference);
     assert!(matches!(&scene.lights[..], [LightDescription::Constant(_)]));
 }

@@ -60,14 +60,14 @@ impl<'a> LitSegment<'a> {
         if collision <= 0.0 {
             return DVec3::ZERO;
         }
-        let medium = &scene.volumes[self.along.volume_at(t, random.f64())].medium;
+        let volume = &scene.volumes[self.along.volume_at(t, random.f64())];
         let position = self.ray.at(t);
         let sample = Light::Point(*light).sample(position, [0.0; 2]);
-        let phase = medium.phase_function.value(self.ray.direction, sample.toward);
+        let phase = volume.medium.phase_function.value(self.ray.direction, sample.toward);
         let shadow_ray = Ray { origin: position, direction: sample.toward };
         let transmittance = estimators.transmittance(scene, &shadow_ray, sample.distance, random);
         // μs T/p_e · w_e
-        let weighted = medium.albedo * (collision / (collision + distribution.pdf(t)));
+        let weighted = volume.albedo_at(position) * (collision / (collision + distribution.pdf(t)));
         weighted * sample.radiance_over_pdf * (phase * transmittance / probability)
     }
 }

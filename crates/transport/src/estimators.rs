@@ -4,7 +4,6 @@
 //! first collisions is taken, which follows the sum of their extinctions. A chosen estimator sees all volumes at once, as
 //! one extinction along the ray, since weighted flights have no "first".
 
-use glam::DVec3;
 use tyndall_lanes::Random;
 use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 use tyndall_volumes::Filter;
@@ -81,22 +80,21 @@ impl Estimators {
         SceneFlight { collision: t.map(at), weight, escape }
     }
 
-    /// Distance and albedo of a collision that happens with the true probability, which those of weighted flights do not.
-    pub(crate) fn first_collision(
+    /// A collision that happens with the true probability, which those of weighted flights do not.
+    pub(crate) fn analog_collision<'a>(
         &self,
-        scene: &Scene,
+        scene: &'a Scene,
         ray: &Ray,
-        flight: &SceneFlight,
+        flight: &SceneFlight<'a>,
         random: &mut Random,
-    ) -> Option<(f64, DVec3)> {
+    ) -> Option<(f64, &'a Volume)> {
         let is_weighted = self.distance.is_some_and(|sampler| !sampler.is_analog());
         let is_equiangular = self.distance == Some(DistanceSampler::Equiangular);
-        let collision = if is_weighted && !is_equiangular {
+        if is_weighted && !is_equiangular {
             first_of_all(scene, ray, random).collision
         } else {
             flight.collision
-        };
-        collision.map(|(distance, volume)| (distance, volume.medium.albedo))
+        }
     }
 
     /// The ray as a place to sample point lights from, if that is wanted.

@@ -1,12 +1,13 @@
 //! How light moves: the reference path tracer of the volume rendering equation and the fast engine.
 //!
 //! `along_ray` is the extinction along one ray, which is all that an estimator sees; `distance` and `transmittance` hold one
-//! estimator a file; `reference` puts them together as the equation reads; `fast` does the same with many paths at once,
-//! `spectral` in media that depend on colour. [`render_pass`] fills a film with any of them. [`walk`] follows light the
-//! other way, from where it enters, for fluxes.
+//! estimator a file; `emission` gathers what media send out; `reference` puts them together as the equation reads; `fast`
+//! does the same with many paths at once, `spectral` in media that depend on colour. [`render_pass`] fills a film with any
+//! of them. [`walk`] follows light the other way, from where it enters, for fluxes.
 
 pub mod along_ray;
 pub mod distance;
+mod emission;
 mod equiangular_light;
 mod estimators;
 mod fast;
@@ -21,6 +22,7 @@ pub mod walk;
 
 pub use along_ray::{AlongRay, Lookups};
 pub use distance::{DistanceSampler, Flight, sample_distance};
+pub use emission::{emission_along, emitting_length};
 pub use estimators::Estimators;
 pub use measure::{Measurement, measure};
 pub use properties::{MajorantUse, Need, Properties, Reason};

@@ -5,6 +5,7 @@
 //! It is plain to read and is the oracle for every faster way. Term by term:
 //! - y is drawn with density μt·T by distance sampling, so T μt cancels and a collision leaves
 //!   (1 − albedo)·Le + albedo·Ls, while a ray that leaves without one has met T·Lo;
+//! - light that is given per length is gathered on the way to that collision (see [`emission_along`]);
 //! - Ls is split between next-event estimation (a light is drawn, the transmittance towards it estimated) and
 //!   the continued path (a direction is drawn from the phase function), joined by multiple importance sampling with
 //!   the balance heuristic (Veach 1997, chapter 9);
@@ -19,6 +20,7 @@ use tyndall_film::Sample;
 use tyndall_lanes::Random;
 use tyndall_scene::{Light, Ray, Scene, Volume};
 
+use crate::emission::emission_along;
 use crate::equiangular_light::LitSegment;
 use crate::estimators::Estimators;
 
@@ -37,11 +39,21 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, mut ray: Ray, random: &
     // Density with which the ray's direction was drawn from a phase function; none for the camera's own ray.
     let mut phase_pdf = None;
     let mut scatterings = 0;
+    let shines = scene.volumes.iter().any(|volume| volume.medium.emission_per_length != DVec3::ZERO);
 
     loop {
         let flight = estimators.fly(scene, &ray, random);
-        if scatterings == 0 {
-            layers.first_collision = estimators.first_collision(scene, &ray, &flight, random);
+        if scatterings == 0 || shines {
+            let collision = estimators.analog_collision(scene, &ray, &flight, random);
+            if scatterings == 0 {
+                let albedo =
+                    |(distance, volume): (f64, &Volume)| (distance, volume.albedo_at(ray.at(distance)));
+                layers.first_collision = collision.map(albedo);
+            }
+            let end = collision.map_or(f64::INFINITY, |(distance, _)| distance);
+            for volume in scene.volumes.iter().filter(|_| shines) {
+                layers.emission += throughput * emission_along(volume, &ray, end, random);
+            }
         }
         if flight.escape != 0.0 {
             let escaped = throughput * flight.escape * escaped_radiance(scene, ray.direction, phase_pdf);
@@ -57,13 +69,14 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, mut ray: Ray, random: &
         throughput *= flight.weight;
         let position = ray.at(distance);
         let medium = &volume.medium;
+        let albedo = volume.albedo_at(position);
 
-        layers.emission += throughput * (DVec3::ONE - medium.albedo) * medium.emission;
+        layers.emission += throughput * (DVec3::ONE - albedo) * volume.emission_at(position);
 
         if !may_scatter {
             break;
         }
-        throughput *= medium.albedo;
+        throughput *= albedo;
         if !survives_roulette(&mut throughput, random) {
             break;
         }

@@ -99,3 +99,31 @@ pub struct Tile<T> {
     /// Whether its voxels are active.
     pub active: bool,
 }
+
+impl Grid {
+    /// Component 0, 1 or 2 of a grid of vectors as a grid of its own; `None` if the values are no vectors.
+    pub fn component(&self, axis: usize) -> Option<Grid> {
+        let GridValues::Vec3(vectors) = &self.values else { return None };
+        let tile = |tile: &Tile<[f32; 3]>| Tile {
+            origin: tile.origin,
+            log2_edge: tile.log2_edge,
+            value: tile.value[axis],
+            active: tile.active,
+        };
+        let values = GridValues::Float(Tree {
+            background: vectors.background[axis],
+            tiles: vectors.tiles.iter().map(tile).collect(),
+            leaves: vectors.leaves.clone(),
+            leaf_values: vectors.leaf_values.iter().map(|value| value[axis]).collect(),
+        });
+        Some(Grid {
+            name: self.name.clone(),
+            class: self.class,
+            index_to_world: self.index_to_world,
+            saved_as_half: self.saved_as_half,
+            codec: self.codec.clone(),
+            metadata: self.metadata.clone(),
+            values,
+        })
+    }
+}

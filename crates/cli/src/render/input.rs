@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use miette::miette;
 use tyndall_film::Colours;
-use tyndall_scene::description::VolumeSummary;
+use tyndall_scene::description::{Glow, VolumeSummary};
 use tyndall_scene::{SceneDescription, SceneDocument, choose_density};
-use tyndall_volumes::Grid;
+use tyndall_volumes::{Grid, GridValues};
 
 use crate::output::Output;
 use crate::volume_input::{self, RawArgs};
@@ -93,6 +93,7 @@ fn from_volume(path: &Path, overrides: &[String], raw: &RawArgs, stem: String) -
     let mut names: Vec<String> = file.grids.iter().map(|grid| format!("`{}`", grid.name)).collect();
     // The scene says which of several grids of one name is taken.
     names.dedup();
+    let glow = glow(&file.grids);
     let Some(grid) = choose_density(file.grids) else {
         return Err(miette!(
             "{}: has no scalar grid to render, only the vectors {}; give a file with a density",
@@ -103,7 +104,8 @@ fn from_volume(path: &Path, overrides: &[String], raw: &RawArgs, stem: String) -
     if names.len() > 1 {
         notes.push(format!("of the grids {} `{}` is rendered", names.join(", "), grid.name));
     }
-    let Some(summary) = summary(&grid) else {
+    let glow = glow.filter(|_| grid.name.to_ascii_lowercase().contains("density"));
+    let Some(summary) = summary(&grid, glow) else {
         return Err(miette!(
             "{}: grid `{}` has no active voxels: there is nothing to see; give a file with a density",
             path.display(),
@@ -111,6 +113,15 @@ fn from_volume(path: &Path, overrides: &[String], raw: &RawArgs, stem: String) -
         ));
     };
     drop(grid);
+    match &summary.glow {
+        Some(Glow::Temperature { grid_name, max }) => notes.push(format!(
+            "`{grid_name}` is taken for kelvin, {max:.0} at most, and the volume glows; --print-scene shows how"
+        )),
+        Some(Glow::Flame { grid_name, .. }) => {
+            notes.push(format!("`{grid_name}` is taken for flames, which shine; --print-scene shows how"));
+        }
+        None => {}
+    }
     let mut automatic = SceneDescription::for_volume(&path.display().to_string(), &summary);
     notes.push("light, camera and density are chosen from the data; --print-scene shows them".into());
     automatic.description.volumes.iter_mut().try_for_each(|volume| raw.describe(volume))?;
@@ -121,8 +132,20 @@ fn from_volume(path: &Path, overrides: &[String], raw: &RawArgs, stem: String) -
     Ok(input)
 }
 
+/// The grid by which a file's volume glows: temperatures before flames.
+fn glow(grids: &[Grid]) -> Option<Glow> {
+    let glow = |grid: &Grid| {
+        let max = *grid.values.statistics().max.first()?;
+        Glow::of_grid(&grid.name, max)
+    };
+    let scalars = grids.iter().filter(|grid| !matches!(grid.values, GridValues::Vec3(_)));
+    let found: Vec<Glow> = scalars.filter_map(glow).collect();
+    let is_temperature = |glow: &&Glow| matches!(glow, Glow::Temperature { .. });
+    found.iter().find(is_temperature).or(found.first()).cloned()
+}
+
 /// What the made-up scene depends on; `None` if no voxel is active.
-fn summary(grid: &Grid) -> Option<VolumeSummary> {
+fn summary(grid: &Grid, glow: Option<Glow>) -> Option<VolumeSummary> {
     let statistics = grid.values.statistics();
     let [low, high] = statistics.active_bbox?;
     let to_world = grid.index_to_world;
@@ -148,5 +171,6 @@ fn summary(grid: &Grid) -> Option<VolumeSummary> {
         voxel_size: to_world.matrix3.determinant().abs().cbrt(),
         class: grid.class,
         value_is_temperature: name.contains("temperature"),
+        glow,
     })
 }

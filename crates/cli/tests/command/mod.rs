@@ -66,6 +66,8 @@ impl Folder {
     pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
         command.current_dir(self.0.path()).args(line.split_whitespace()).stdin(Stdio::null());
+        // A cache of its own, which leaves the user's alone.
+        command.env("TYNDALL_CACHE", self.path("cache"));
         command
     }
 

@@ -6,12 +6,14 @@
 //! box that is active, so that f^(1/3) is the part of an edge that a compact body fills.
 
 use glam::DVec3;
+use tyndall_optics::planck;
 use tyndall_volumes::GridClass;
 
 use super::lights::direction_of_compass;
 use super::{
-    CameraDescription, FilmDescription, GridMeaning, LightDescription, MediumDescription, PhaseDescription,
-    Rgb, SceneDescription, SkyDescription, VolumeDescription,
+    CameraDescription, EmissionGridDescription, FilmDescription, GridMeaning, LightDescription,
+    MediumDescription, PhaseDescription, SceneDescription, SkyDescription, SpectrumDescription,
+    SpectrumTable, TemperatureDescription, VolumeDescription,
 };
 
 /// What is known of a grid when a scene for it is made up.
@@ -33,6 +35,46 @@ pub struct VolumeSummary {
     pub class: GridClass,
     /// Whether the grid is taken for a temperature for lack of a density.
     pub value_is_temperature: bool,
+    /// A grid beside it by which the volume glows.
+    pub glow: Option<Glow>,
+}
+
+/// A grid by which a volume glows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Glow {
+    /// Temperatures in kelvin.
+    Temperature {
+        /// Name of the grid.
+        grid_name: String,
+        /// Greatest active value, K.
+        max: f64,
+    },
+    /// Brightness without a unit.
+    Flame {
+        /// Name of the grid.
+        grid_name: String,
+        /// Greatest active value.
+        max: f64,
+    },
+}
+
+impl Glow {
+    /// What a grid of this name, with this greatest value, says of a glow: temperatures are taken for such if they can be
+    /// kelvin of something that is seen to glow.
+    pub fn of_grid(grid_name: &str, max: f64) -> Option<Glow> {
+        let name = grid_name.to_ascii_lowercase();
+        let grid_name = grid_name.to_owned();
+        if name.contains("temperature") && (LEAST_KELVIN..1e5).contains(&max) {
+            Some(Self::Temperature { grid_name, max })
+        } else if ["flame", "heat", "fire"].iter().any(|word| name.contains(word))
+            && max > 0.0
+            && max.is_finite()
+        {
+            Some(Self::Flame { grid_name, max })
+        } else {
+            None
+        }
+    }
 }
 
 /// A made-up scene, and what it says of its choices.
@@ -52,6 +94,12 @@ impl AutomaticScene {
 }
 
 const OPTICAL_THICKNESS: f64 = 16.0;
+/// Below this temperature nothing is seen to glow.
+const LEAST_KELVIN: f64 = 700.0;
+/// Luminance of the brightest flames, times that of white.
+const GLOW: f64 = 4.0;
+/// Colour of flames without a temperature, K.
+const FLAME_KELVIN: f64 = 1900.0;
 const ALBEDO: f64 = 0.99;
 const ASYMMETRY: f64 = 0.5;
 /// Part of the picture's width or height that the box fills.
@@ -83,12 +131,12 @@ impl SceneDescription {
                 grid: Some(summary.grid_name.clone()),
                 values: Some(if is_level_set { GridMeaning::SignedDistance } else { GridMeaning::Density }),
                 medium: MediumDescription {
-                    mu_t: Some(extinction(summary)),
-                    albedo: Some(Rgb::Grey(ALBEDO)),
-                    phase: PhaseDescription::Hg { g: ASYMMETRY },
-                    ..MediumDescription::default()
+                    mu_t: Some(extinction(summary).into()),
+                    albedo: Some(ALBEDO.into()),
+                    phase: Some(PhaseDescription::Hg { g: ASYMMETRY }),
+                    ..glowing(summary).medium
                 },
-                ..VolumeDescription::default()
+                ..glowing(summary)
             }],
             lights: vec![LightDescription::Sky(SkyDescription {
                 sun_elevation: Some(SUN[0]),
@@ -99,6 +147,45 @@ impl SceneDescription {
         };
         AutomaticScene { notes: notes(summary), description }
     }
+}
+
+/// The keys by which the volume glows.
+fn glowing(summary: &VolumeSummary) -> VolumeDescription {
+    let mut volume = VolumeDescription::default();
+    match &summary.glow {
+        None => {}
+        Some(Glow::Temperature { grid_name, max }) => {
+            // Of Planck's light a collision brings the share that is absorbed.
+            let scale = GLOW / ((1.0 - ALBEDO) * planck::luminance(*max));
+            volume.emission_scale = Some(round_to(scale, 1e-2 * scale));
+            volume.temperature = Some(TemperatureDescription {
+                file: None,
+                grid: Some(grid_name.clone()),
+                scale: 1.0,
+                offset: 0.0,
+            });
+        }
+        Some(Glow::Flame { grid_name, max }) => {
+            // Bright along a quarter of the body.
+            let luminance = 4.0 * GLOW / (max * middle_edge(summary));
+            volume.medium.emission_per_length = Some(SpectrumDescription::Table(SpectrumTable {
+                blackbody: Some(FLAME_KELVIN),
+                luminance: Some(round_to(luminance, 1e-2 * luminance).clamp(0.0, 1e25)),
+                ..SpectrumTable::default()
+            }));
+            volume.emission_grid =
+                Some(EmissionGridDescription { file: None, grid: Some(grid_name.clone()), scale: 1.0 });
+        }
+    }
+    volume
+}
+
+/// The middle one of the box's edges.
+fn middle_edge(summary: &VolumeSummary) -> f64 {
+    let [min, max] = sound_box(summary);
+    let mut edges = (max - min).to_array();
+    edges.sort_by(f64::total_cmp);
+    edges[1]
 }
 
 /// The box, or a voxel's worth of one where it has no extent or is not finite.
@@ -113,9 +200,6 @@ fn sound_box(summary: &VolumeSummary) -> [DVec3; 2] {
 }
 
 fn extinction(summary: &VolumeSummary) -> f64 {
-    let [min, max] = sound_box(summary);
-    let mut edges = (max - min).to_array();
-    edges.sort_by(f64::total_cmp);
     let is_level_set = summary.class == GridClass::LevelSet;
     // Of a level set only the voxels near the surface are active; a body fills about half of its box.
     let fraction = if is_level_set { 0.5 } else { summary.active_fraction };
@@ -126,7 +210,7 @@ fn extinction(summary: &VolumeSummary) -> f64 {
     } else {
         [summary.mean, summary.max].into_iter().find(is_usable).unwrap_or(1.0)
     };
-    let mu_t = OPTICAL_THICKNESS / (mean * edges[1] * fraction.cbrt());
+    let mu_t = OPTICAL_THICKNESS / (mean * middle_edge(summary) * fraction.cbrt());
     round_to(mu_t.clamp(1e-25, 1e25), 1e-3 * mu_t.clamp(1e-25, 1e25))
 }
 
@@ -200,7 +284,23 @@ fn notes(summary: &VolumeSummary) -> Vec<(Vec<String>, String)> {
         grid += "\nThere is no density in the file: its temperature is shown as if it were one.";
     }
     let path = |keys: &[&str]| keys.iter().map(|key| (*key).to_owned()).collect();
-    vec![
+    let glow = summary.glow.as_ref().map(|glow| match glow {
+        Glow::Temperature { max, .. } => (
+            path(&["volume", "0", "temperature"]),
+            format!(
+                "Taken for kelvin, {} at most: the volume glows; without this key it does not.",
+                round_to(*max, 1.0)
+            ),
+        ),
+        Glow::Flame { max, .. } => (
+            path(&["volume", "0", "emission_grid"]),
+            format!(
+                "Taken for flames, {} at most: they shine; without both keys they do not.",
+                round_to(*max, 1e-3 * max)
+            ),
+        ),
+    });
+    let mut notes = vec![
         (path(&["camera"]), "Chosen by itself: the whole volume in view, the sky behind it.".to_owned()),
         (path(&["volume", "0", "grid"]), grid),
         (path(&["volume", "0", "values"]), values),
@@ -217,7 +317,9 @@ fn notes(summary: &VolumeSummary) -> Vec<(Vec<String>, String)> {
             path(&["light", "0"]),
             "A clear day; at exposure 0 a white surface in full sun is white.".to_owned(),
         ),
-    ]
+    ];
+    notes.extend(glow);
+    notes
 }
 
 #[cfg(test)]
@@ -235,6 +337,7 @@ mod tests {
             voxel_size: 0.1,
             class: GridClass::FogVolume,
             value_is_temperature: false,
+            glow: None,
         }
     }
 
@@ -278,7 +381,9 @@ mod tests {
     #[test]
     fn the_density_scale_gives_the_body_its_optical_thickness() {
         let scene = SceneDescription::for_volume("a.vdb", &summary());
-        let mu_t = scene.description.volumes[0].medium.mu_t.unwrap();
+        let Some(SpectrumDescription::Grey(mu_t)) = scene.description.volumes[0].medium.mu_t else {
+            panic!("{:?}", scene.description.volumes[0].medium)
+        };
         // The middle edge is 20, half of which the active eighth of the box fills.
         assert!((mu_t * 0.25 * 10.0 - 16.0).abs() < 0.02, "{mu_t}");
     }
@@ -294,6 +399,20 @@ mod tests {
     }
 
     #[test]
+    fn what_can_glow_glows() {
+        assert_eq!(Glow::of_grid("temperature", 1.97), None);
+        assert_eq!(Glow::of_grid("flame", f64::NEG_INFINITY), None);
+        assert_eq!(Glow::of_grid("density", 3.0), None);
+        let fire = VolumeSummary { glow: Glow::of_grid("Temperature", 1400.0), ..summary() };
+        let scene = SceneDescription::for_volume("a.vdb", &fire);
+        let volume = &scene.description.volumes[0];
+        assert_eq!(volume.temperature.as_ref().and_then(|field| field.grid.as_deref()), Some("Temperature"));
+        let brightest = (1.0 - ALBEDO) * volume.emission_scale.unwrap() * planck::luminance(1400.0);
+        assert!((brightest / GLOW - 1.0).abs() < 0.01, "{brightest}");
+        assert!(scene.to_toml().contains("# Taken for kelvin, 1400 at most"), "{}", scene.to_toml());
+    }
+
+    #[test]
     fn odd_grids_have_sound_scenes() {
         let base = summary();
         let point = [DVec3::ONE, DVec3::ONE];
@@ -304,7 +423,10 @@ mod tests {
             VolumeSummary { mean: f64::NAN, max: 0.0, active_fraction: 0.0, ..base.clone() },
             VolumeSummary { mean: -3.0, max: 1e-20, ..base.clone() },
             VolumeSummary { class: GridClass::LevelSet, mean: -0.1, ..base.clone() },
-            VolumeSummary { value_is_temperature: true, mean: 900.0, max: 2000.0, ..base },
+            VolumeSummary { value_is_temperature: true, mean: 900.0, max: 2000.0, ..base.clone() },
+            VolumeSummary { glow: Glow::of_grid("temperature", 1500.0), ..base.clone() },
+            VolumeSummary { glow: Glow::of_grid("flames", 1e-9), ..base.clone() },
+            VolumeSummary { glow: Glow::of_grid("Heat", 1e30), ..base },
         ] {
             let scene = SceneDescription::for_volume("a.vdb", &odd);
             assert_eq!(read_back(&scene), scene.description, "{odd:?}");

@@ -16,11 +16,29 @@ pub struct FilmDescription {
     /// Further layers of the EXR file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<Vec<Layer>>,
+    /// What the three channels of the picture are.
+    #[serde(skip_serializing_if = "super::is_default")]
+    pub output: FilmOutput,
+    /// Instead of colours: the radiance at each of these wavelengths, nm. Needs `render.mode = "spectral"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 100, max = 10000)))]
+    pub bands: Option<Vec<f64>>,
+}
+
+/// What the three channels of the picture are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FilmOutput {
+    /// Linear Rec. 709.
+    #[default]
+    Rgb,
+    /// CIE 1931 XYZ. Needs `render.mode = "spectral"`.
+    Xyz,
 }
 
 impl Default for FilmDescription {
     fn default() -> Self {
-        Self { resolution: [1280, 720], exposure: 0.0, layers: None }
+        Self { resolution: [1280, 720], exposure: 0.0, layers: None, output: FilmOutput::Rgb, bands: None }
     }
 }
 
@@ -60,11 +78,25 @@ pub struct RenderDescription {
     pub max_depth: Option<u32>,
     /// Which implementation of the transport renders.
     pub integrator: Integrator,
+    /// What colours are computed with.
+    #[serde(skip_serializing_if = "super::is_default")]
+    pub mode: ColourMode,
+}
+
+/// What colours are computed with.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ColourMode {
+    /// Red, green and blue.
+    #[default]
+    Rgb,
+    /// Wavelengths.
+    Spectral,
 }
 
 impl Default for RenderDescription {
     fn default() -> Self {
-        Self { spp: 64, seed: 0, max_depth: None, integrator: Integrator::Fast }
+        Self { spp: 64, seed: 0, max_depth: None, integrator: Integrator::Fast, mode: ColourMode::Rgb }
     }
 }
 

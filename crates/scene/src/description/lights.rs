@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::rgb::{Rgb, fraction};
+use super::spectrum::SpectrumDescription;
 
 /// A light.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,7 +33,7 @@ pub enum LightDescription {
 #[schemars(inline)]
 pub struct ConstantLightDescription {
     /// Radiance.
-    pub radiance: Rgb,
+    pub radiance: SpectrumDescription,
 }
 
 /// An equirectangular picture of the surroundings: the top row is +y, the middle column is -z (north), and
@@ -123,7 +124,7 @@ pub struct SunLightDescription {
     /// The way the light travels: from the sun to the scene.
     pub direction: [f64; 3],
     /// Irradiance on a surface that faces the sun.
-    pub irradiance: Rgb,
+    pub irradiance: SpectrumDescription,
     /// Angle across the disc, degrees.
     #[serde(default = "sun_angular_diameter")]
     #[schemars(range(max = 90), extend("exclusiveMinimum" = 0))]
@@ -137,7 +138,7 @@ pub struct DistantLightDescription {
     /// The way the light travels.
     pub direction: [f64; 3],
     /// Irradiance on a surface that faces the light.
-    pub irradiance: Rgb,
+    pub irradiance: SpectrumDescription,
 }
 
 /// A point that shines equally in all directions.
@@ -147,7 +148,7 @@ pub struct PointLightDescription {
     /// Where it is.
     pub position: [f64; 3],
     /// Power per solid angle, W/sr for radiance in W/(m² sr) and lengths in m.
-    pub intensity: Rgb,
+    pub intensity: SpectrumDescription,
 }
 
 /// Mean angle across the sun as seen from the Earth, degrees.

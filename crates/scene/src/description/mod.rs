@@ -7,6 +7,7 @@
 mod automatic;
 mod call;
 mod camera;
+mod emission;
 mod film;
 mod lights;
 mod medium;
@@ -19,18 +20,21 @@ pub mod phase_spec;
 mod quantity;
 mod rgb;
 mod rules;
+mod spectrum;
 mod spheres;
 mod transform;
+mod units;
 mod volume;
 
-pub use automatic::{AutomaticScene, VolumeSummary};
+pub use automatic::{AutomaticScene, Glow, VolumeSummary};
 pub use camera::CameraDescription;
-pub use film::{FilmDescription, Integrator, Layer, RenderDescription};
+pub use emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
+pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription};
 pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
     PointLightDescription, SkyDescription, SunLightDescription,
 };
-pub use medium::{Coefficients, MediumDescription};
+pub use medium::MediumDescription;
 pub use meter::{
     BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
     RadianceMeterDescription,
@@ -40,8 +44,10 @@ pub use phase::{PhaseDescription, SggxShape};
 pub use quantity::Quantity;
 pub use rgb::Rgb;
 pub use rules::Violation;
+pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
 pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};
+pub use units::unit_in_metres;
 pub use volume::{
     AtmosphereShape, BoxShape, GridFilter, GridMeaning, ProceduralDescription, RawType, SlabShape,
     SphereShape, Storage, VolumeDescription, VolumeSource,
@@ -54,7 +60,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Tyndall scene")]
 pub struct SceneDescription {
-    /// Name of the scene's unit of length; informational. Coefficients are per this unit.
+    /// The scene's unit of length: `m`, `cm`, `mm`, `km`, … Coefficients are per this unit; it matters only to what is
+    /// given in physical units, such as a `preset`.
     #[serde(default = "default_unit")]
     pub unit: String,
     /// The camera.
@@ -86,4 +93,11 @@ fn default_unit() -> String {
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
+}
+
+impl SceneDescription {
+    /// The media of the scene, everywhere and in volumes.
+    pub fn media(&self) -> impl Iterator<Item = &MediumDescription> {
+        self.medium.iter().chain(self.volumes.iter().map(|volume| &volume.medium))
+    }
 }

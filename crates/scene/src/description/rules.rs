@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use super::meter_rules::meters;
 use super::{
-    CameraDescription, LightDescription, MediumDescription, SceneDescription, SkyDescription,
-    TransformDescription, VolumeDescription, VolumeSource,
+    CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, PhaseDescription,
+    SceneDescription, SkyDescription, SpectrumDescription, TransformDescription, VolumeDescription,
+    VolumeSource,
 };
 
 /// A key whose value contradicts the rest of the scene.
@@ -22,12 +23,16 @@ impl SceneDescription {
     pub fn violations(&self) -> Vec<Violation> {
         let mut found = Findings { here: Vec::new(), violations: Vec::new() };
         found.within("camera", |found| camera(found, &self.camera));
+        film(&mut found, self);
         if let Some(medium) = &self.medium {
-            found.within("medium", |found| medium_rules(found, medium));
+            found.within("medium", |found| {
+                medium_rules(found, medium, &self.unit);
+                fills_all_space(found, medium, &self.unit);
+            });
         }
         for (index, description) in self.volumes.iter().enumerate() {
             found.within("volume", |found| {
-                found.within(&index.to_string(), |found| volume(found, description))
+                found.within(&index.to_string(), |found| volume(found, description, &self.unit))
             });
         }
         for (index, description) in self.lights.iter().enumerate() {
@@ -97,17 +102,71 @@ fn camera(found: &mut Findings, camera: &CameraDescription) {
     }
 }
 
-fn medium_rules(found: &mut Findings, medium: &MediumDescription) {
-    if let Err((key, message)) = medium.coefficients() {
-        found.report(key, message);
+fn film(found: &mut Findings, scene: &SceneDescription) {
+    let mut needs_spectral = |key: &str, is_given: bool| {
+        if is_given && scene.render.mode != ColourMode::Spectral {
+            let message =
+                format!("`{key}` is computed from wavelengths: give `mode = \"spectral\"` in [render]");
+            found.within("film", |found| found.report(key, message));
+        }
+    };
+    needs_spectral("output", scene.film.output == FilmOutput::Xyz);
+    needs_spectral("bands", scene.film.bands.is_some());
+    if let Some(bands) = &scene.film.bands {
+        found.within("film", |found| {
+            if bands.is_empty() {
+                found.report("bands", "`bands` is empty: give wavelengths in nm, or remove it");
+            } else if scene.film.output == FilmOutput::Xyz {
+                found.report("output", "the film has both `output = \"xyz\"` and `bands`: keep one");
+            }
+        });
     }
-    if let Some((key, message)) = medium.phase.violation() {
+}
+
+fn medium_rules(found: &mut Findings, medium: &MediumDescription, unit: &str) {
+    if let Err((path, message)) = medium.coefficients(unit, 0.0) {
+        report_at(found, &path, message);
+    }
+    for (key, emission) in
+        [("emission", &medium.emission), ("emission_per_length", &medium.emission_per_length)]
+    {
+        if let Some(emission) = emission {
+            light_spectrum(found, key, emission);
+        }
+    }
+    if let Some((key, message)) = medium.phase.as_ref().and_then(PhaseDescription::violation) {
         found.within("phase", |found| found.report(key, message));
     }
 }
 
-fn volume(found: &mut Findings, volume: &VolumeDescription) {
-    medium_rules(found, &volume.medium);
+/// A ray through empty space that shines would gather light without end.
+fn fills_all_space(found: &mut Findings, medium: &MediumDescription, unit: &str) {
+    let Ok(coefficients) = medium.coefficients(unit, 0.0) else { return };
+    if medium.emission_per_length.is_some() && coefficients.mu_t_rgb().min_element() <= 0.0 {
+        let message = "a medium that fills all space and does not weaken light would shine without end: \
+                       give it an extinction above 0";
+        found.report("emission_per_length", message);
+    }
+}
+
+fn light_spectrum(found: &mut Findings, key: &'static str, spectrum: &SpectrumDescription) {
+    if let Err((inner, message)) = spectrum.light() {
+        report_at(found, &[key, inner], format!("`{key}`: {message}"));
+    }
+}
+
+/// Reports the key at the end of a path of tables; empty keys are none.
+fn report_at(found: &mut Findings, path: &[&str], message: String) {
+    match path {
+        [] => found.report("", message),
+        [key, rest @ ..] if rest.iter().all(|inner| inner.is_empty()) => found.report(key, message),
+        [table, rest @ ..] => found.within(table, |found| report_at(found, rest, message)),
+    }
+}
+
+fn volume(found: &mut Findings, volume: &VolumeDescription, unit: &str) {
+    medium_rules(found, &volume.medium, unit);
+    fields(found, volume);
     if let Some(transform) = &volume.transform {
         found.within("transform", |found| transform_is_invertible(found, transform));
     }
@@ -144,6 +203,37 @@ fn volume(found: &mut Findings, volume: &VolumeDescription) {
     }
 }
 
+/// The grids beside the density.
+fn fields(found: &mut Findings, volume: &VolumeDescription) {
+    let medium = &volume.medium;
+    if volume.temperature.is_some() && medium.emission.is_some() {
+        found.report("emission", "the volume glows by both `emission` and `temperature`: keep one");
+    }
+    let emits =
+        volume.temperature.is_some() || medium.emission.is_some() || medium.emission_per_length.is_some();
+    for (key, is_given) in [
+        ("emission_grid", volume.emission_grid.is_some()),
+        ("emission_scale", volume.emission_scale.is_some()),
+    ] {
+        if is_given && !emits {
+            let message = format!(
+                "`{key}` multiplies what is not there: give `emission`, `emission_per_length` or `temperature`"
+            );
+            found.report(key, message);
+        }
+    }
+    let files = [
+        ("emission_grid", volume.emission_grid.as_ref().map(|grid| &grid.file)),
+        ("temperature", volume.temperature.as_ref().map(|grid| &grid.file)),
+        ("albedo_grid", volume.albedo_grid.as_ref().map(|grid| &grid.file)),
+    ];
+    for (key, file) in files {
+        if matches!(file, Some(None)) && volume.file.is_none() {
+            found.report(key, format!("`{key}` needs a `file`: the volume itself is from none"));
+        }
+    }
+}
+
 fn transform_is_invertible(found: &mut Findings, transform: &TransformDescription) {
     if let Some(matrix) = transform.matrix {
         if transform.scale.is_some() || transform.rotate.is_some() || transform.translate.is_some() {
@@ -164,10 +254,18 @@ fn transform_is_invertible(found: &mut Findings, transform: &TransformDescriptio
 
 fn light(found: &mut Findings, light: &LightDescription) {
     match light {
-        LightDescription::Sun(sun) => found.report_zero("direction", sun.direction),
-        LightDescription::Distant(distant) => found.report_zero("direction", distant.direction),
+        LightDescription::Sun(sun) => {
+            found.report_zero("direction", sun.direction);
+            light_spectrum(found, "irradiance", &sun.irradiance);
+        }
+        LightDescription::Distant(distant) => {
+            found.report_zero("direction", distant.direction);
+            light_spectrum(found, "irradiance", &distant.irradiance);
+        }
         LightDescription::Sky(description) => sky(found, description),
-        LightDescription::Constant(_) | LightDescription::Image(_) | LightDescription::Point(_) => {}
+        LightDescription::Constant(constant) => light_spectrum(found, "radiance", &constant.radiance),
+        LightDescription::Point(point) => light_spectrum(found, "intensity", &point.intensity),
+        LightDescription::Image(_) => {}
     }
 }
 

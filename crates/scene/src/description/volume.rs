@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
 use super::medium::MediumDescription;
 use super::transform::TransformDescription;
 
@@ -54,6 +55,19 @@ pub struct VolumeDescription {
     /// The optical properties.
     #[serde(flatten)]
     pub medium: MediumDescription,
+    /// Factor on everything that the volume emits; 1 unless given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub emission_scale: Option<f64>,
+    /// A grid that multiplies the emission.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission_grid: Option<EmissionGridDescription>,
+    /// A grid of temperatures: the medium glows as a black body does, with Le = `emission_scale` B in W/(m² sr nm).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<TemperatureDescription>,
+    /// A grid of colours that multiplies the albedo.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo_grid: Option<AlbedoGridDescription>,
     /// How voxels are kept in memory; chosen from the data by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub storage: Option<Storage>,

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use glam::DVec3;
+use tyndall_optics::{Spectrum, cie};
 
 use super::{ConstantLight, DistantLight, ImageLight, Light, PointLight, SunLight, read_light_image};
-use crate::description::{ImageFilter, LightDescription};
+use crate::description::{ImageFilter, LightDescription, SpectrumDescription};
 use crate::error::SceneError;
 use crate::sky::Sky;
 
@@ -14,6 +15,8 @@ use crate::sky::Sky;
 pub struct BuiltLights {
     /// The lights; a sky with its sun is two.
     pub lights: Vec<Light>,
+    /// For each light its spectrum at luminance 1, if that is not the one of its red, green and blue.
+    pub spectra: Vec<Option<Spectrum>>,
     /// One line each.
     pub warnings: Vec<String>,
 }
@@ -21,10 +24,17 @@ pub struct BuiltLights {
 /// Makes the lights of a scene, whose file names are relative to `folder`, ready.
 pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<BuiltLights, SceneError> {
     let mut built = BuiltLights::default();
-    for description in descriptions {
+    for (number, description) in descriptions.iter().enumerate() {
+        let colour = |spectrum: &SpectrumDescription| {
+            let place = format!("light.{number}");
+            spectrum.light().map_err(|(_, message)| SceneError::file(Path::new(&place), message))
+        };
+        let mut own_spectrum = None;
         match description {
             LightDescription::Constant(constant) => {
-                built.lights.push(Light::Constant(ConstantLight::new(constant.radiance.channels())));
+                let radiance = colour(&constant.radiance)?;
+                built.lights.push(Light::Constant(ConstantLight::new(radiance.light_rgb())));
+                own_spectrum = Some(radiance);
             }
             LightDescription::Image(description) => {
                 let (image, warning) = read_light_image(&folder.join(&description.file))?;
@@ -45,20 +55,33 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
             }
             LightDescription::Sun(sun) => {
                 let toward = -DVec3::from_array(sun.direction);
-                let disc = SunLight::new(toward, sun.irradiance.channels(), sun.angular_diameter);
+                let irradiance = colour(&sun.irradiance)?;
+                let disc = SunLight::new(toward, irradiance.light_rgb(), sun.angular_diameter);
                 built.lights.push(Light::Sun(disc));
+                own_spectrum = Some(irradiance);
             }
             LightDescription::Distant(distant) => {
                 let direction = DVec3::from_array(distant.direction);
-                built
-                    .lights
-                    .push(Light::Distant(DistantLight::new(direction, distant.irradiance.channels())));
+                let irradiance = colour(&distant.irradiance)?;
+                built.lights.push(Light::Distant(DistantLight::new(direction, irradiance.light_rgb())));
+                own_spectrum = Some(irradiance);
             }
             LightDescription::Point(point) => {
                 let position = DVec3::from_array(point.position);
-                built.lights.push(Light::Point(PointLight::new(position, point.intensity.channels())));
+                let intensity = colour(&point.intensity)?;
+                built.lights.push(Light::Point(PointLight::new(position, intensity.light_rgb())));
+                own_spectrum = Some(intensity);
             }
         }
+        // Only lights of one colour have a spectrum of their own, and these are one light each.
+        built.spectra.resize(built.lights.len(), own_spectrum.and_then(of_luminance_one));
     }
     Ok(built)
+}
+
+/// The spectrum at luminance 1, if it is not made from red, green and blue.
+fn of_luminance_one(spectrum: Spectrum) -> Option<Spectrum> {
+    let luminance = cie::luminance(spectrum.light_rgb());
+    let is_own = !matches!(spectrum, Spectrum::RgbLight(_)) && luminance > 0.0;
+    is_own.then(|| spectrum.scaled(1.0 / luminance))
 }

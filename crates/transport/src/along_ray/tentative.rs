@@ -21,6 +21,15 @@ pub(crate) struct Tentative<'p> {
     pub piece: &'p Piece,
 }
 
+impl Tentative<'_> {
+    /// Whether a product has become 0 so deep in the medium that the rest of the walk is not worth its time. (A 0 met
+    /// earlier, at a real collision that was certain, does not end the walk: its cost is to be the stated one.)
+    pub fn is_hopeless(&self, weight: f64) -> bool {
+        const DEEP: f64 = 1000.0;
+        weight == 0.0 && self.depth > DEEP
+    }
+}
+
 /// Visits the tentative collisions under the rate `rate` of each piece, until `visit` breaks.
 pub(crate) fn tentative_collisions<B>(
     ray: &AlongRay,

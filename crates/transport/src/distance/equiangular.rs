@@ -38,7 +38,7 @@ impl Equiangular {
     pub fn new(light: LightBeside, range: (f64, f64)) -> Option<Self> {
         let angle = |t: f64| (t - light.nearest).atan2(light.distance);
         let angles = (angle(range.0), angle(range.1));
-        let is_usable = light.distance > 1e-9 * (range.1 - range.0) && angles.0 < angles.1;
+        let is_usable = light.distance > 1e-12 * (range.1 - range.0) && angles.0 < angles.1;
         is_usable.then_some(Self { light, range, angles })
     }
 

@@ -2,7 +2,9 @@
 //!
 //! A sampler returns a [`Flight`]: a collision distance with a weight, and a weight for what lies beyond the ray, such that
 //!
-//!   E[weight·f(t)] = ∫ μt(t) T(t) f(t) dt   for every f,      E[escape] = T(end)
+//! ```text
+//! E[weight·f(t)] = ∫ μt(t) T(t) f(t) dt   for every f,      E[escape] = T(end)
+//! ```
 //!
 //! Analog samplers draw t with density μt·T, so that one weight is 1 and the other 0. One file for each way.
 

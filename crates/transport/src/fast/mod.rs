@@ -15,7 +15,9 @@ mod pool;
 mod volume;
 
 pub(crate) use volume::FastScene;
+use volume::FastVolume;
 
+use crate::emission::emission_along;
 use glam::Vec3;
 use march::List;
 use pool::{POOL, Path, Pixel, Rays};
@@ -165,10 +167,15 @@ impl<'a> Engine<'a> {
                     self.add_direct(slot);
                     Next::Fly
                 }
-                Next::Finish => match self.paths[slot].nearest {
-                    Some((volume, distance)) => self.scatter(slot, volume as usize, distance),
-                    None => self.escape(slot),
-                },
+                Next::Finish => {
+                    if self.scene.shines {
+                        self.gather(slot);
+                    }
+                    match self.paths[slot].nearest {
+                        Some((volume, distance)) => self.scatter(slot, volume as usize, distance),
+                        None => self.escape(slot),
+                    }
+                }
                 Next::Record => {
                     self.record(slot);
                     Next::Start
@@ -262,6 +269,18 @@ impl<'a> Engine<'a> {
         false
     }
 
+    /// The light that volumes send out along the path's ray, up to its collision.
+    #[cold]
+    fn gather(&mut self, slot: usize) {
+        let path = &mut self.paths[slot];
+        let ray = self.scene.world_ray(path.position, path.direction);
+        let end = path.nearest.map_or(f64::INFINITY, |(_, distance)| f64::from(distance));
+        for volume in self.scene.volumes.iter().filter_map(|volume| volume.shines) {
+            let emission = emission_along(volume, &ray, end, &mut self.rays.random[slot]);
+            path.emission += path.throughput * emission.as_vec3();
+        }
+    }
+
     /// The path collides in `volume`: emission is gathered, a light is chosen, a direction drawn.
     #[inline(always)]
     fn scatter(&mut self, slot: usize, volume: usize, distance: f32) -> Next {
@@ -269,14 +288,18 @@ impl<'a> Engine<'a> {
         let path = &mut self.paths[slot];
         let random = &mut self.rays.random[slot];
         path.position += path.direction * distance;
+        let (albedo, emission) = match volume.fields {
+            None => (volume.albedo, volume.emission),
+            Some(fields) => FastVolume::looked_up(fields, self.scene.to_world(path.position)),
+        };
         if path.scatterings == 0 {
-            path.first = Some((distance, volume.albedo));
+            path.first = Some((distance, albedo));
         }
-        path.emission += path.throughput * volume.emission;
+        path.emission += path.throughput * emission;
         if self.scene.scene.max_depth.is_some_and(|depth| path.scatterings >= depth) {
             return Next::Record;
         }
-        path.throughput *= volume.albedo;
+        path.throughput *= albedo;
         let strength = path.throughput.max_element();
         if strength < ROULETTE_THROUGHPUT {
             let probability = strength / (2.0 * ROULETTE_THROUGHPUT);

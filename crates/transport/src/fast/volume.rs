@@ -11,6 +11,8 @@ pub(crate) struct FastScene<'a> {
     pub scene: &'a Scene,
     pub centre: DVec3,
     pub volumes: Vec<FastVolume<'a>>,
+    /// Whether any volume sends out light along the way.
+    pub shines: bool,
 }
 
 pub(crate) struct FastVolume<'a> {
@@ -20,6 +22,10 @@ pub(crate) struct FastVolume<'a> {
     pub phase: Phase<'a>,
     /// (1 − albedo)·Le: what a collision adds.
     pub emission: Vec3,
+    /// The volume, if albedo or emission have to be looked up at each collision.
+    pub fields: Option<&'a Volume>,
+    /// The volume, if it sends out light along the way.
+    pub shines: Option<&'a Volume>,
 }
 
 pub(crate) enum Kind<'a> {
@@ -49,8 +55,9 @@ impl<'a> FastScene<'a> {
                 (all.0 + all.1) * 0.5
             }
         };
-        let volumes = scene.volumes.iter().map(|volume| FastVolume::new(volume, centre)).collect();
-        FastScene { scene, centre, volumes }
+        let volumes: Vec<_> = scene.volumes.iter().map(|volume| FastVolume::new(volume, centre)).collect();
+        let shines = volumes.iter().any(|volume| volume.shines.is_some());
+        FastScene { scene, centre, volumes, shines }
     }
 
     pub fn to_world(&self, position: Vec3) -> DVec3 {
@@ -92,7 +99,16 @@ impl<'a> FastVolume<'a> {
             albedo: medium.albedo.as_vec3(),
             phase: Phase::new(&medium.phase_function),
             emission: ((DVec3::ONE - medium.albedo) * medium.emission).as_vec3(),
+            fields: volume.fields.is_some().then_some(volume),
+            shines: (medium.emission_per_length != DVec3::ZERO).then_some(volume),
         }
+    }
+
+    /// The albedo at a place in the world, and what a collision there adds.
+    #[cold]
+    pub fn looked_up(volume: &Volume, position: DVec3) -> (Vec3, Vec3) {
+        let albedo = volume.albedo_at(position);
+        (albedo.as_vec3(), ((DVec3::ONE - albedo) * volume.emission_at(position)).as_vec3())
     }
 }
 

@@ -27,6 +27,8 @@ pub(super) struct Flight {
     pub log_next_event: DVec4,
     /// Π(1 − ρ) over the null collisions, by which the flight is less dense than the shadow ray.
     pub null_fraction: f64,
+    /// Volume, distance and 1 − ρ of the null collisions.
+    nulls: Vec<(usize, f64, f64)>,
 }
 
 impl Flight {
@@ -41,7 +43,6 @@ impl Flight {
         let mu_t: Vec<DVec4> = media.iter().map(|medium| medium.mu_t_along(ray.direction)).collect();
         let mut collision = None;
         let mut end = f64::INFINITY;
-        // Volume, distance and 1 − ρ.
         let mut nulls: Vec<(usize, f64, f64)> = Vec::new();
         for (number, (volume, mu_t)) in volumes.iter().zip(&mu_t).enumerate() {
             let local = volume.local_ray(ray);
@@ -52,21 +53,32 @@ impl Flight {
                 collision = Some((distance, number));
             }
         }
-        let mut flight =
-            Flight { collision, log_density: DVec4::ZERO, log_next_event: DVec4::ZERO, null_fraction: 1.0 };
-        flight.weigh(volumes, &mu_t, ray, end, &nulls);
+        let mut flight = Flight { collision, nulls, ..Flight::start() };
+        flight.weigh(volumes, &mu_t, ray, end);
         flight
     }
 
+    /// The part of the flight before the distance `t`, which is less than that of its collision.
+    pub(super) fn up_to(&self, volumes: &[Volume], media: &[ChannelMedium], ray: &Ray, t: f64) -> Flight {
+        let mu_t: Vec<DVec4> = media.iter().map(|medium| medium.mu_t_along(ray.direction)).collect();
+        let mut part = Flight { nulls: self.nulls.clone(), ..Flight::start() };
+        part.weigh(volumes, &mu_t, ray, t);
+        part
+    }
+
+    /// A flight that has not begun.
+    fn start() -> Flight {
+        Flight {
+            collision: None,
+            log_density: DVec4::ZERO,
+            log_next_event: DVec4::ZERO,
+            null_fraction: 1.0,
+            nulls: Vec::new(),
+        }
+    }
+
     /// Fills in the densities of the flight that ends at `end`.
-    fn weigh(
-        &mut self,
-        volumes: &[Volume],
-        mu_t: &[DVec4],
-        ray: &Ray,
-        end: f64,
-        nulls: &[(usize, f64, f64)],
-    ) {
+    fn weigh(&mut self, volumes: &[Volume], mu_t: &[DVec4], ray: &Ray, end: f64) {
         for (volume, mu_t) in volumes.iter().zip(mu_t) {
             let thickness = optical_thickness(*mu_t, bound_integral(volume, &volume.local_ray(ray), end));
             self.log_density -= thickness;
@@ -74,7 +86,7 @@ impl Flight {
                 self.log_next_event -= thickness;
             }
         }
-        for &(number, _, fraction) in nulls.iter().filter(|(_, t, _)| *t < end) {
+        for &(number, _, fraction) in self.nulls.iter().filter(|(_, t, _)| *t < end) {
             let log_mu_t = ln(mu_t[number]);
             self.log_density += log_mu_t;
             self.log_next_event += log_mu_t;

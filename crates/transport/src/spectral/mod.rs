@@ -47,6 +47,8 @@ use tyndall_lanes::Random;
 use tyndall_optics::{cie, uplift};
 use tyndall_scene::{ChannelMedium, Channels, Observer, Ray, Scene};
 
+use crate::emission::{emission_factor_along, emitting_stretch};
+
 use self::densities::PathDensities;
 use self::flight::Flight;
 use self::layers::Layers;
@@ -138,6 +140,7 @@ impl<'a> SpectralScene<'a> {
 
         loop {
             let flight = Flight::draw(&scene.volumes, &self.media, &ray, hero, random);
+            layers.emission += albedo * self.emission_along(&ray, &flight, &densities, random);
             densities.fly(&flight);
             let Some((distance, number)) = flight.collision else {
                 layers.add_in_scattered(
@@ -149,15 +152,16 @@ impl<'a> SpectralScene<'a> {
             let position = ray.at(distance);
             let medium = &self.media[number];
             if scatterings == 0 {
-                layers.first_collision(distance, self.albedo_of(number));
+                layers.first_collision(distance, self.albedo_of(number, position));
             }
+            let (albedo_here, emission) = scene.volumes[number].colours_at(position, medium, &self.channels);
 
-            layers.emission += albedo * densities.relative() * (DVec4::ONE - medium.albedo) * medium.emission;
+            layers.emission += albedo * densities.relative() * (DVec4::ONE - albedo_here) * emission;
 
             if scene.max_depth.is_some_and(|depth| scatterings >= depth) {
                 break;
             }
-            albedo *= medium.albedo;
+            albedo *= albedo_here;
             if !survives_roulette(&mut albedo, densities.relative(), random) {
                 break;
             }
@@ -175,11 +179,41 @@ impl<'a> SpectralScene<'a> {
 
     /// The albedo of a volume for the film, where it has to lie between 0 and 1: of a band at its wavelength, otherwise in
     /// RGB.
-    fn albedo_of(&self, number: usize) -> DVec3 {
+    fn albedo_of(&self, number: usize, position: DVec3) -> DVec3 {
+        let volume = &self.scene.volumes[number];
         match self.scene.observer {
-            Observer::Bands(_) => self.media[number].albedo.truncate(),
-            _ => self.scene.volumes[number].medium.albedo,
+            Observer::Bands(_) => {
+                volume.colours_at(position, &self.media[number], &self.channels).0.truncate()
+            }
+            _ => volume.albedo_at(position),
         }
+    }
+
+    /// Light that volumes send out per length, up to the end of the flight: at a uniform point of each volume's stretch,
+    /// which every hero could have reached. Its mean over flights is ∫ ε T dt in every channel, as in [`crate::emission`].
+    fn emission_along(
+        &self,
+        ray: &Ray,
+        flight: &Flight,
+        densities: &PathDensities,
+        random: &mut Random,
+    ) -> DVec4 {
+        let end = flight.collision.map_or(f64::INFINITY, |(distance, _)| distance);
+        let mut sum = DVec4::ZERO;
+        for (volume, medium) in self.scene.volumes.iter().zip(&self.media) {
+            if medium.emission_per_length == DVec4::ZERO {
+                continue;
+            }
+            let Some((enter, leave)) = emitting_stretch(volume, ray, end) else { continue };
+            let t = enter + random.f64() * (leave - enter);
+            let factor = emission_factor_along(volume, ray, t);
+            if factor > 0.0 {
+                let mut here = *densities;
+                here.fly(&flight.up_to(&self.scene.volumes, &self.media, ray, t));
+                sum += here.relative() * medium.emission_per_length * (factor * (leave - enter));
+            }
+        }
+        sum
     }
 
     /// Lo: radiance of the infinite lights in `direction`, each weighted against next-event estimation having drawn it.
@@ -188,9 +222,10 @@ impl<'a> SpectralScene<'a> {
         lights
             .iter()
             .zip(light_probabilities)
-            .map(|(light, probability)| {
+            .enumerate()
+            .map(|(number, (light, probability))| {
                 let weight = densities.weight_against(probability * light.pdf(direction));
-                self.light(light.radiance(direction)) * weight
+                self.light(number, light.radiance(direction)) * weight
             })
             .sum()
     }
@@ -206,11 +241,12 @@ impl<'a> SpectralScene<'a> {
         densities: &PathDensities,
         random: &mut Random,
     ) -> DVec4 {
-        let Some((light, probability)) = self.scene.choose_light(random.f64()) else {
+        let Some((number, probability)) = self.scene.choose_light_number(random.f64()) else {
             return DVec4::ZERO;
         };
+        let light = &self.scene.lights[number];
         let sample = light.sample(position, [random.f64(), random.f64()]);
-        let radiance = self.light(sample.radiance_over_pdf) / probability;
+        let radiance = self.light(number, sample.radiance_over_pdf) / probability;
         let phase = medium.phases.values(before, sample.toward);
         if densities.relative() * phase * radiance == DVec4::ZERO {
             return DVec4::ZERO;
@@ -222,9 +258,15 @@ impl<'a> SpectralScene<'a> {
         radiance * densities.connect(phase, &shadow, light_pdf)
     }
 
-    /// A light's colour in the channels.
-    fn light(&self, colour: DVec3) -> DVec4 {
-        DVec4::from_array(self.rgb_light.map(|of_rgb| of_rgb.dot(colour)))
+    /// Light of a colour in the channels, from the light of this number.
+    fn light(&self, number: usize, colour: DVec3) -> DVec4 {
+        match (self.channels, &self.scene.light_spectra[number]) {
+            (Channels::Wavelengths(wavelengths_nm), Some(spectrum)) => {
+                let luminance = cie::luminance(colour);
+                DVec4::from_array(wavelengths_nm.map(|nm| spectrum.at(nm) * luminance))
+            }
+            _ => DVec4::from_array(self.rgb_light.map(|of_rgb| of_rgb.dot(colour))),
+        }
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
         |at, _| {
             weight *= 1.0 - ray.mu_t(at.t, lookups) / at.rate;
             sum += weight * (at.depth - whole).exp();
-            ControlFlow::<()>::Continue(())
+            if at.is_hopeless(weight) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         },
     );
     sum

@@ -46,7 +46,7 @@ pub(super) fn estimate(
                 }
                 weight = roulette_weight.copysign(weight);
             }
-            ControlFlow::Continue(())
+            if at.is_hopeless(weight) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         },
     );
     if walk.is_break() { 0.0 } else { weight }

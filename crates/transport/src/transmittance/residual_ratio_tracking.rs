@@ -32,7 +32,7 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
         random,
         |at, _| {
             residual *= 1.0 - (ray.mu_t(at.t, lookups) - at.piece.control) / at.rate;
-            ControlFlow::<()>::Continue(())
+            if at.is_hopeless(residual) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         },
     );
     (-control_thickness).exp() * residual

@@ -1,6 +1,8 @@
 //! Debiased ray marching: the bias of coarse steps is taken off by a telescoping sum, of which one term is drawn.
 //!
-//!   T = E[I₀] + Σⱼ E[Iⱼ₊₁ − Iⱼ],   Iⱼ = exp(−τ marched with 2ʲ steps),   X = I₀ + (Iⱼ₊₁ − Iⱼ)/pⱼ
+//! ```text
+//! T = E[I₀] + Σⱼ E[Iⱼ₊₁ − Iⱼ],   Iⱼ = exp(−τ marched with 2ʲ steps),   X = I₀ + (Iⱼ₊₁ − Iⱼ)/pⱼ
+//! ```
 //!
 //! A march of 2ʲ⁺¹ equal steps from a random offset is two marches of 2ʲ, at its even and its odd places, so that the
 //! difference of the first from the mean of the exponentials of the two needs no more lookups and is of second order. It
@@ -28,7 +30,7 @@ pub(super) const PROPERTIES: Properties = Properties {
 /// r: probability that the next finer level is drawn.
 const FINER: f64 = 0.353_553_390_593_273_8;
 /// Most steps of the coarsest march.
-const MOST_STEPS: f64 = 1e6;
+const MOST_STEPS: f64 = 1e5;
 
 pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> f64 {
     let coarsest = ray.majorant_thickness().ceil().clamp(1.0, MOST_STEPS) as u64;

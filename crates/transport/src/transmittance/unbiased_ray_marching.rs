@@ -33,7 +33,7 @@ const CERTAIN_ORDER: usize = 2;
 /// Mean of the order N: 0.1·(2 + Σ over k > 2 of 2^(k−2)·2!/k!) = 0.1·(2 + (e² − 5)/2).
 const MEAN_ORDER: f64 = 0.319_452_804_946_532_5;
 /// Most lookups of a march: there e^(−τ) is 0, or the majorant much too loose.
-const MOST_STEPS: f64 = 1e6;
+const MOST_STEPS: f64 = 1e5;
 
 pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> f64 {
     let steps = steps(ray.majorant_thickness());

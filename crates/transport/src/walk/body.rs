@@ -127,7 +127,7 @@ impl Walk for Body {
             first_collision(&self.volumes, &photon.ray, f64::INFINITY, random)
         {
             photon.ray.origin = photon.ray.at(distance);
-            scores.add(ABSORBED, photon.absorb(volume.medium.albedo.x));
+            scores.add(ABSORBED, photon.absorb(volume.albedo_at(photon.ray.origin).x));
             if !photon.survives_roulette(random) {
                 return;
             }

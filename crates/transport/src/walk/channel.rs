@@ -1,7 +1,8 @@
 //! Media in one channel: a packet carries one number, so that of coloured media one colour is measured at a time.
 
-use glam::DVec3;
-use tyndall_scene::{Channels, Medium, Volume};
+use std::sync::Arc;
+
+use tyndall_scene::{Channels, Fields, Medium, Volume};
 
 /// The volumes as `channel` (0 red, 1 green, 2 blue) sees them: grey.
 ///
@@ -11,24 +12,25 @@ pub fn in_one_channel(volumes: &[Volume], channel: Option<usize>) -> Result<Vec<
     let grey = |volume: &Volume| {
         let chosen = match channel {
             Some(channel) => channel,
-            None if is_grey(&volume.medium) => 0,
+            None if is_grey(volume) => 0,
             None => return Err(volume.name.clone()),
         };
         let medium = volume.medium.in_channels(&Channels::Rgb);
-        let medium = Medium {
-            mu_t: medium.mu_t[chosen],
-            albedo: DVec3::splat(medium.albedo[chosen]),
-            phase_function: medium.phases.of(chosen).clone(),
-            emission: DVec3::ZERO,
-            chromatic: None,
-        };
-        Ok(Volume { medium, ..volume.clone() })
+        let phase_function = medium.phases.of(chosen).clone();
+        let medium = Medium::grey(medium.mu_t[chosen], medium.albedo[chosen], phase_function);
+        let fields = volume.fields.as_deref().map(|fields| {
+            let albedo = fields.albedo.as_ref().map(|channels| [0; 3].map(|_| channels[chosen].clone()));
+            Arc::new(Fields { albedo, ..fields.clone() })
+        });
+        Ok(Volume { medium, fields, ..volume.clone() })
     };
     let volumes: Result<Vec<Volume>, String> = volumes.iter().map(grey).collect();
     // Nothing collides where there is no extinction.
     volumes.map(|volumes| volumes.into_iter().filter(|volume| volume.medium.mu_t > 0.0).collect())
 }
 
-fn is_grey(medium: &Medium) -> bool {
-    medium.chromatic.is_none() && medium.albedo.min_element() == medium.albedo.max_element()
+fn is_grey(volume: &Volume) -> bool {
+    let medium = &volume.medium;
+    let has_colours = volume.fields.as_ref().is_some_and(|fields| fields.albedo.is_some());
+    medium.chromatic.is_none() && medium.albedo.min_element() == medium.albedo.max_element() && !has_colours
 }

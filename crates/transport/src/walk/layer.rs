@@ -119,7 +119,7 @@ impl Walk for Layer<'_> {
                         let left = limit.lift(&mut photon.ray.origin, self.faces[1]);
                         absorbed += photon.absorb(left);
                     }
-                    absorbed += photon.absorb(volume.medium.albedo.x);
+                    absorbed += photon.absorb(volume.albedo_at(photon.ray.origin).x);
                     self.score(ABSORBED, photon.ray.origin, absorbed, scores);
                     if !photon.survives_roulette(random) {
                         return;
@@ -155,7 +155,7 @@ impl Walk for Layer<'_> {
 impl Layer<'_> {
     /// The results that tallies of this layer hold.
     pub fn fluxes(&self, tallies: &Tallies) -> LayerFluxes {
-        let is_conservative = self.volumes.iter().all(|v| v.medium.albedo.x == 1.0);
+        let is_conservative = self.volumes.iter().all(|v| v.medium.albedo.x == 1.0 && v.fields.is_none());
         let possible = |is_possible: bool, tally: usize| {
             if is_possible { tallies.fraction(tally) } else { Estimate::exact(0.0) }
         };

@@ -58,15 +58,15 @@ impl Slab {
         if self.tau == 0.0 {
             return Vec::new();
         }
-        let medium = Medium {
-            mu_t: 1.0,
-            albedo: DVec3::splat(self.albedo),
-            phase_function: self.phase_function.clone(),
-            emission: DVec3::ZERO,
-            chromatic: None,
-        };
+        let medium = Medium::grey(1.0, self.albedo, self.phase_function.clone());
         let density = Density::Slab { bottom: -self.tau, top: 0.0 };
-        vec![Volume { name: "slab".into(), world_to_local: DAffine3::IDENTITY, density, medium }]
+        vec![Volume {
+            name: "slab".into(),
+            world_to_local: DAffine3::IDENTITY,
+            density,
+            medium,
+            fields: None,
+        }]
     }
 
     fn layer<'a>(&self, volumes: &'a [Volume]) -> Layer<'a> {

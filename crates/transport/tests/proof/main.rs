@@ -5,6 +5,7 @@
 
 mod agreement;
 mod chromatic;
+mod emission;
 mod estimators;
 mod phase_functions;
 mod rendering;

@@ -2,7 +2,7 @@
 
 use tyndall_lanes::Random;
 use tyndall_scene::Scene;
-use tyndall_transport::along_ray::{AlongRay, Bounding, Control};
+use tyndall_transport::along_ray::{AlongRay, Bounding, Control, Profile};
 use tyndall_transport::{
     Lookups, MajorantUse, TransmittanceEstimator, estimate_transmittance, repeat_transmittance,
 };
@@ -52,6 +52,7 @@ fn rays<'a>(scenes: &'a [(&'static str, Scene)]) -> Vec<(&'static str, AlongRay<
 fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
     let scenes = scenes();
     let rays = rays(&scenes);
+    let mut failures = Vec::new();
     for estimator in TransmittanceEstimator::ALL {
         let properties = estimator.properties();
         if !properties.unbiased {
@@ -75,18 +76,33 @@ fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
                     continue;
                 }
                 let z = found.z(*truth);
-                assert!(
-                    z.abs() < two_sided_quantile(2e-6),
-                    "{} in {name} under {bounding:?}: {found:?}, not {truth}, z = {z}",
-                    estimator.name()
-                );
+                if z.abs() > two_sided_quantile(2e-6) {
+                    failures.push(format!(
+                        "{} in {name} under {bounding:?}: {found:?}, not {truth}, z = {z}",
+                        estimator.name()
+                    ));
+                }
                 scores.push(z);
             }
         }
         let p = if scores.is_empty() { 1.0 } else { kolmogorov_smirnov(&scores, normal_cdf) };
         eprintln!("{}: {} z scores, p = {p:.3}", estimator.name(), scores.len());
-        assert!(p > 5e-4, "{}: p = {p} of {scores:?}", estimator.name());
+        if p < 5e-4 {
+            failures.push(format!("{}: p = {p} of {scores:?}", estimator.name()));
+        }
     }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// In a thin medium all but the first term of the p-series is drawn by roulette. At a level of 1e-3.
+#[test]
+fn the_roulette_of_the_p_series_makes_up_for_what_it_cuts() {
+    let loose = Bounding { majorant_scale: 2.0, ..WHOLE };
+    let ray = AlongRay::with_profile(Profile::Constant(0.005), 1.0, 1).with_bounding(loose);
+    let found = repeat_transmittance(TransmittanceEstimator::PSeriesCmf, &ray, 200_000, 6);
+    let z = found.z(f64::exp(-0.005));
+    assert!(z.abs() < two_sided_quantile(1e-3), "{found:?}, z = {z}");
+    assert!(found.lookups < 0.02, "{found:?}");
 }
 
 #[test]

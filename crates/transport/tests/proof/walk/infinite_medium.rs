@@ -15,10 +15,9 @@ use tyndall_transport::walk::Estimate;
 const TABLE: &str = include_str!("../../truth/infinite_medium.json");
 
 fn medium(density: Density, radius: f64, phase_function: PhaseFunction) -> Volume {
-    let medium =
-        Medium { mu_t: 1.0, albedo: DVec3::ONE, phase_function, emission: DVec3::ZERO, chromatic: None };
+    let medium = Medium::grey(1.0, 1.0, phase_function);
     let world_to_local = DAffine3::from_scale(DVec3::splat(radius)).inverse();
-    Volume { name: "medium".into(), world_to_local, density, medium }
+    Volume { name: "medium".into(), world_to_local, density, medium, fields: None }
 }
 
 fn fly(volume: &Volume, ray: &mut Ray, random: &mut Random) {

@@ -1,0 +1,124 @@
+//! What varies from place to place in a volume beside its density: emission, temperature, albedo.
+//!
+//! All are looked up where a path collides, so that tracking a ray through the density knows nothing of them. A field is
+//! the filtered value of its grid; a temperature's light is that of the filtered temperature, B(λ, scale · value + offset).
+
+use glam::{DAffine3, DVec3};
+use std::sync::Arc;
+use tyndall_optics::planck::BlackbodyColours;
+use tyndall_volumes::BrickGrid;
+
+use crate::medium::box_interval;
+use crate::{Ray, Volume};
+
+/// A scalar grid that stands somewhere.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// World space to the coordinates of the grid's filter.
+    pub world_to_local: DAffine3,
+    /// The grid.
+    pub grid: Arc<BrickGrid>,
+}
+
+/// A temperature at each place.
+#[derive(Debug, Clone)]
+pub struct TemperatureField {
+    /// The grid's values.
+    pub field: Field,
+    /// Kelvin for each unit of them.
+    pub scale: f64,
+    /// Kelvin where they are 0.
+    pub offset: f64,
+    /// Factor on Planck's radiance, W/(m² sr nm).
+    pub radiance_scale: f64,
+    /// Colours of black bodies in RGB.
+    pub colours: Arc<BlackbodyColours>,
+}
+
+/// The grids of a volume beside its density.
+#[derive(Debug, Clone, Default)]
+pub struct Fields {
+    /// Multiplies the emission; a factor on the grid's values goes with it. None of its values is negative.
+    pub emission: Option<(Field, f64)>,
+    /// Adds a black body's light to the emitted radiance Le.
+    pub temperature: Option<TemperatureField>,
+    /// Multiplies the albedo of red, green and blue; between 0 and 1.
+    pub albedo: Option<[Field; 3]>,
+}
+
+impl Field {
+    /// The value at a place in the world; outside the grid's domain its background.
+    pub fn value(&self, position: DVec3) -> f64 {
+        let local = self.world_to_local.transform_point3(position);
+        let [min, max] = self.grid.domain();
+        if local.cmpge(min).all() && local.cmple(max).all() {
+            self.grid.value(local)
+        } else {
+            f64::from(self.grid.background())
+        }
+    }
+
+    /// The distances between which the local ray is inside the grid's domain, cut to [0, `end`].
+    pub fn interval(&self, local: &Ray, end: f64) -> Option<(f64, f64)> {
+        let [min, max] = self.grid.domain();
+        let (enter, leave) = box_interval(local, min, max)?;
+        let (enter, leave) = (enter.max(0.0), leave.min(end));
+        (enter < leave).then_some((enter, leave))
+    }
+
+    /// The ray in the coordinates of the grid's filter; distances along it stay those of the world.
+    pub fn local_ray(&self, ray: &Ray) -> Ray {
+        Ray {
+            origin: self.world_to_local.transform_point3(ray.origin),
+            direction: self.world_to_local.transform_vector3(ray.direction),
+        }
+    }
+}
+
+impl TemperatureField {
+    /// Temperature at a place, K.
+    pub fn kelvin(&self, position: DVec3) -> f64 {
+        self.scale * self.field.value(position) + self.offset
+    }
+}
+
+impl Volume {
+    /// Single-scattering albedo of red, green and blue at a place.
+    pub fn albedo_at(&self, position: DVec3) -> DVec3 {
+        self.medium.albedo * self.albedo_factor(position)
+    }
+
+    /// Emitted radiance Le of red, green and blue at a place.
+    pub fn emission_at(&self, position: DVec3) -> DVec3 {
+        let Some(fields) = &self.fields else { return self.medium.emission };
+        let factor = self.emission_factor(position);
+        if factor == 0.0 {
+            return DVec3::ZERO;
+        }
+        let glow = fields.temperature.as_ref().map_or(DVec3::ZERO, |temperature| {
+            temperature.colours.at(temperature.kelvin(position)) * temperature.radiance_scale
+        });
+        (self.medium.emission + glow) * factor
+    }
+
+    /// What multiplies the emission at a place.
+    pub fn emission_factor(&self, position: DVec3) -> f64 {
+        let emission = self.fields.as_ref().and_then(|fields| fields.emission.as_ref());
+        emission.map_or(1.0, |(field, scale)| field.value(position) * scale)
+    }
+
+    /// What multiplies the albedo of red, green and blue at a place.
+    pub fn albedo_factor(&self, position: DVec3) -> DVec3 {
+        let albedo = self.fields.as_ref().and_then(|fields| fields.albedo.as_ref());
+        albedo.map_or(DVec3::ONE, |[red, green, blue]| {
+            DVec3::new(red.value(position), green.value(position), blue.value(position))
+        })
+    }
+
+    /// Whether the volume sends out light of its own.
+    pub fn glows(&self) -> bool {
+        self.medium.emission != DVec3::ZERO
+            || self.medium.emission_per_length != DVec3::ZERO
+            || self.fields.as_ref().is_some_and(|fields| fields.temperature.is_some())
+    }
+}
