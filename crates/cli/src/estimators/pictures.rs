@@ -75,10 +75,8 @@ pub fn render_all(
         let (name, kind) = (estimator.properties().name, estimator.kind());
         match chosen(estimator).validate(&small) {
             _ if small.is_chromatic() => {
-                let reason = format!(
-                    "{name}: extinction depends on colour, for which the spectral integrator has its own"
-                );
-                refused.push(Refused { name, kind, reason });
+                let reason = "extinction depends on colour: the spectral integrator renders, with estimators of its own";
+                refused.push(Refused { name, kind, reason: reason.into() });
             }
             Ok(()) => choices.push((Some(estimator), chosen(estimator))),
             Err(reason) => refused.push(Refused { name, kind, reason: reason.to_string() }),

@@ -2,7 +2,7 @@
 
 use super::WIDTH;
 use crate::estimators::Report;
-use crate::estimators::table::{by_efficiency, by_picture_efficiency, kind_name, number, starred};
+use crate::estimators::table::{by_efficiency, by_picture_efficiency, kind_name, short, starred};
 use crate::estimators::trial::{Kind, Trial};
 use crate::plot::{Anchor, Bar, Bars, COLOURS, Svg};
 
@@ -31,7 +31,7 @@ fn both_kinds(svg: &mut Svg, top: f64, report: &Report, x_name: &str, bar: impl 
     let mut x = LEFT;
     for (number_of_ray, (ray, colour)) in (1..).zip(report.rays.iter().zip(COLOURS.iter().cycle())) {
         svg.bar(colour, [x, top + 2.0], [x + 14.0, top + 12.0]);
-        let name = format!("ray {number_of_ray}, optical thickness {}", number(ray.optical_thickness));
+        let name = format!("ray {number_of_ray}, optical thickness {}", short(ray.optical_thickness));
         svg.text("small", Anchor::Start, [x + 20.0, top + 11.0], &name);
         x += 210.0;
     }
