@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tyndall_optics::cie;
 use tyndall_scene::description::Integrator;
-use tyndall_scene::{Medium, Observer};
+use tyndall_scene::Observer;
 
 use crate::agreement::{assert_same_batches, batches};
 use crate::chromatic::{BATCHES, crowd};
