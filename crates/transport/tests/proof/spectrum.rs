@@ -91,20 +91,20 @@ fn bands_of_a_rayleigh_slab_have_the_transmittance_of_their_wavelengths() {
 #[test]
 fn thin_air_under_the_sun_has_the_colour_of_its_spectrum() {
     let thickness = 1e-3;
-    let air = scene(&format!(
-        "camera = {{ position = [0, 0, 3], target = [0, 0, 0], vertical_fov = 1e-6 }}
-         film = {{ resolution = [16, 16] }}
-         render = {{ mode = \"spectral\", max_depth = 1 }}
+    let air = scene(
+        "camera = { position = [0, 0, 3], target = [0, 0, 0], vertical_fov = 1e-6 }
+         film = { resolution = [16, 16] }
+         render = { mode = \"spectral\", max_depth = 1 }
          [[light]]
          type = \"distant\"
          direction = [0, -1, 0]
          irradiance = 1000
          [[volume]]
-         box = {{ min = [-1e-3, -1e-3, -1], max = [1e-3, 1e-3, 1] }}
-         mu_s = {{ power_law = -4, at = 550, value = 0.5 }}
+         box = { min = [-1e-3, -1e-3, -1], max = [1e-3, 1e-3, 1] }
+         mu_s = { power_law = -4, at = 550, value = 0.5 }
          mu_a = 0
-         phase = {{ type = \"rayleigh\" }}"
-    ));
+         phase = { type = \"rayleigh\" }",
+    );
     let film = render(&air, Integrator::Fast, 4, 0..256);
     let phase = 3.0 / (16.0 * std::f64::consts::PI);
     let source = |nm: f64| {
