@@ -69,9 +69,8 @@ impl Figure {
         });
         match self {
             Self::Variance => {
-                "Variance of a sample over the squared true value. Lines: homogeneous media under a \
-                               majorant of twice the extinction. Dots: rays of this scene. Left out: where a few samples \
-                               decide."
+                "Variance of a sample over the squared truth. Lines: homogeneous media under twice their extinction as \
+                               majorant. Dots: this scene's rays. Doubtful ones are left out."
                     .into()
             }
             Self::Convergence => format!(

@@ -74,8 +74,8 @@ pub fn render_all(
     for estimator in Estimator::all() {
         let (name, kind) = (estimator.properties().name, estimator.kind());
         match chosen(estimator).validate(&small) {
-            _ if small.is_chromatic() => {
-                let reason = "extinction depends on colour: the spectral integrator renders, with estimators of its own";
+            _ if small.is_spectral() => {
+                let reason = "the spectral integrator renders this scene, with estimators of its own";
                 refused.push(Refused { name, kind, reason: reason.into() });
             }
             Ok(()) => choices.push((Some(estimator), chosen(estimator))),

@@ -9,6 +9,8 @@ use crate::plot::{Anchor, Bar, Bars, COLOURS, Svg};
 /// Where bars start.
 const LEFT: f64 = 250.0;
 const RIGHT: f64 = WIDTH - 30.0;
+/// Where those of pictures do, whose names are longer.
+const LEFT_OF_PICTURES: f64 = 290.0;
 
 pub fn draw_efficiency(svg: &mut Svg, top: f64, report: &Report) -> f64 {
     let bar = |trial: &Trial| match trial.efficiency {
@@ -79,7 +81,7 @@ pub fn draw_pictures(svg: &mut Svg, top: f64, report: &Report) -> f64 {
         })
         .collect();
     let numbers = pictures.estimators.iter().filter_map(|picture| picture.efficiency);
-    let bars = Bars::new([LEFT, top + 4.0, RIGHT], 1, numbers);
+    let bars = Bars::new([LEFT_OF_PICTURES, top + 4.0, RIGHT], 1, numbers);
     bars.draw(svg, "efficiency, 1/s", &COLOURS, &rows);
     top + 4.0 + bars.height(rows.len())
 }
