@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use tyndall_optics::cie;
-use tyndall_scene::description::Integrator;
 use tyndall_scene::Observer;
+use tyndall_scene::description::Integrator;
 
 use crate::agreement::{assert_same_batches, batches};
 use crate::chromatic::{BATCHES, crowd};
