@@ -56,11 +56,11 @@ pub struct Args {
     #[arg(long)]
     pictures: bool,
     /// Width of these pictures, pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 48, requires = "pictures",
+    #[arg(long, value_name = "PIXELS", default_value_t = 64, requires = "pictures",
           value_parser = clap::value_parser!(u32).range(4..=1024))]
     width: u32,
     /// Samples a pixel of these pictures
-    #[arg(long, value_name = "N", default_value_t = 4, requires = "pictures",
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "pictures",
           value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     spp: u32,
     /// Number of threads for the pictures; as many as there are cores by default. Rays are always timed on one

@@ -31,7 +31,8 @@ Examples:
   tyndall render smoke.vdb --print-scene > smoke.toml    ... and the choices as a scene file, to go on from
   tyndall render smoke.toml -o smoke.exr --error 1%      renders until the error is 1 %
   tyndall diff a.exr b.exr                       whether two pictures differ beyond their noise
-  tyndall slab --tau 2 --albedo 0.9 --g 0.75             what a layer reflects, transmits and absorbs"
+  tyndall slab --tau 2 --albedo 0.9 --g 0.75             what a layer reflects, transmits and absorbs
+  tyndall estimators smoke.toml -o report.html           all distance samplers and transmittance estimators compared"
 )]
 struct Cli {
     #[command(subcommand)]

@@ -19,7 +19,7 @@ use crate::render::input;
 use crate::terminal::{answer, tell};
 use crate::volume_input::RawArgs;
 
-/// Measure fluxes and radiances in a scene: the values of its [[meter]] tables, with their standard errors
+/// Measure fluxes and radiances in a scene: the values of its `[[meter]]` tables, with their standard errors
 ///
 /// Meters are of the types layer (reflectance, transmittance, absorptance, radiance, also by column), body (a thing of
 /// finite size in a beam), irradiance and radiance (in the scene's own light); `tyndall schema` describes their keys.

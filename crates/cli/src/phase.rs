@@ -151,12 +151,15 @@ fn table(curves: &[Curve], angles: &[f64]) -> String {
     if curves.iter().any(|curve| curve.projected_area().is_some()) {
         text += &line("area", &|curve| format!("{:.6}", curve.projected_area().unwrap_or(1.0)));
     }
-    let efficiencies: [(&str, fn(&MieAverage) -> f64); 2] =
-        [("q_ext", |average| average.q_ext), ("q_sca", |average| average.q_sca)];
-    for (name, efficiency) in efficiencies {
+    let efficiency = |average: &MieAverage, of_scattering: bool| {
+        if of_scattering { average.q_sca } else { average.q_ext }
+    };
+    for (name, of_scattering) in [("q_ext", false), ("q_sca", true)] {
         if curves.iter().any(|curve| curve.spheres().is_some()) {
             text += &line(name, &|curve| {
-                curve.spheres().map_or("-".into(), |spheres| format!("{:.6}", efficiency(&spheres.average)))
+                curve.spheres().map_or("-".into(), |spheres| {
+                    format!("{:.6}", efficiency(&spheres.average, of_scattering))
+                })
             });
         }
     }

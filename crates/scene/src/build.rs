@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
+use tyndall_optics::mie::MieCache;
 use tyndall_volumes::{
     AxisOrder, BrickGrid, ByteOrder, Element, Filter, Grid, GridClass, GridSelection, GridValues, RawShape,
     ReadError, ReadRequest, VolumeFile,
@@ -16,6 +17,7 @@ use crate::description::{
     VolumeSource,
 };
 use crate::light::build_lights;
+use crate::mie::MieTables;
 use crate::ready::light_probabilities;
 use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
@@ -31,7 +33,19 @@ pub struct BuiltScene {
 }
 
 /// Builds the scene of `description`, whose file names are relative to `folder`.
+///
+/// What Lorenz-Mie theory computes is kept in the cache that the environment names.
 pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene, SceneError> {
+    build_with(description, folder, &MieCache::from_environment())
+}
+
+/// The same, with a cache for Lorenz-Mie theory.
+pub fn build_with(
+    description: &SceneDescription,
+    folder: &Path,
+    cache: &MieCache,
+) -> Result<BuiltScene, SceneError> {
+    let tables = MieTables::new(description.render.mode, cache);
     let mut notes = Vec::new();
     let mut grids = Vec::new();
     let mut volumes = Vec::new();
@@ -40,13 +54,13 @@ pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene
             name: "medium".into(),
             world_to_local: DAffine3::IDENTITY,
             density: Density::Everywhere,
-            medium: build_medium(medium, &description.unit, folder, 1.0, "medium")?,
+            medium: build_medium(medium, &description.unit, folder, 1.0, &tables, "medium")?,
             fields: None,
         });
     }
     for (number, volume) in description.volumes.iter().enumerate() {
         let name = volume.name.clone().unwrap_or_else(|| format!("volume.{number}"));
-        volumes.push(build_volume(volume, name, &description.unit, folder, &mut grids, &mut notes)?);
+        volumes.push(build_volume(volume, name, &description.unit, folder, &tables, &mut grids, &mut notes)?);
     }
     // Nothing collides where there is no extinction.
     volumes.retain(|volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO);
@@ -76,6 +90,7 @@ fn build_volume(
     name: String,
     unit: &str,
     folder: &Path,
+    tables: &MieTables,
     grids: &mut Vec<(String, String)>,
     notes: &mut Vec<String>,
 ) -> Result<Volume, SceneError> {
@@ -121,7 +136,7 @@ fn build_volume(
         ));
     }
     let emission_scale = description.emission_scale.unwrap_or(1.0);
-    let medium = build_medium(&description.medium, unit, folder, emission_scale, &name)?;
+    let medium = build_medium(&description.medium, unit, folder, emission_scale, tables, &name)?;
     let fields = build_fields(description, folder, to_scene, &name, notes)?;
     Ok(Volume { name, world_to_local, density, medium, fields })
 }

@@ -4,35 +4,46 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
-use tyndall_optics::Spectrum;
+use tyndall_optics::{PhaseFunction, Spectrum};
 
-use crate::description::{KeyProblem, MediumDescription, SpectrumDescription};
-use crate::phase::{GREY_WAVELENGTH_NM, build_phase};
+use crate::description::{KeyProblem, MediumDescription, SpectrumDescription, unit_in_metres};
+use crate::mie::MieTables;
+use crate::phase::{GREY_WAVELENGTH_NM, build_phase_with};
 use crate::{ChromaticMedium, Medium, MediumPhase, MediumSpectra, SceneError};
 
 /// Relative difference between channels that still counts as grey: decimals that were rounded.
 const GREY_TOLERANCE: f64 = 1e-6;
 
 /// The medium, of which messages say `name`; `unit` is the scene's, file names are relative to `folder`, and
-/// `emission_scale` multiplies what it emits.
+/// `emission_scale` multiplies what it emits. Lorenz-Mie theory is asked for where `tables` says.
 pub(crate) fn build_medium(
     description: &MediumDescription,
     unit: &str,
     folder: &Path,
     emission_scale: f64,
+    tables: &MieTables,
     name: &str,
 ) -> Result<Medium, SceneError> {
     let refuse = |message: String| SceneError::file(Path::new(name), message);
-    let phase = match description.preset_g() {
-        Some(g) => MediumPhase::HenyeyGreenstein(g),
-        None => MediumPhase::ByWavelength(build_phase(
-            description.phase.as_ref().unwrap_or(&Default::default()),
-            folder,
-        )?),
+    let given =
+        || description.phase.as_ref().map(|phase| build_phase_with(phase, folder, tables)).transpose();
+    let (coefficients, phase) = match &description.particles {
+        Some(particles) => {
+            let metres = unit_in_metres(unit).map_err(refuse)?;
+            let (coefficients, phase) = tables.particles(particles, metres, folder)?;
+            let phase = MediumPhase::ByWavelength(given()?.unwrap_or(phase));
+            (coefficients.scaled(description.scale.unwrap_or(1.0)), phase)
+        }
+        None => {
+            let phase = match description.preset_g() {
+                Some(g) => MediumPhase::HenyeyGreenstein(g),
+                None => MediumPhase::ByWavelength(given()?.unwrap_or(PhaseFunction::Isotropic.into())),
+            };
+            let g = phase.at(GREY_WAVELENGTH_NM).mean_cosine();
+            let coefficients = description.coefficients(unit, g).map_err(|(_, message)| refuse(message))?;
+            (coefficients, phase)
+        }
     };
-    let coefficients = description
-        .coefficients(unit, phase.at(GREY_WAVELENGTH_NM).mean_cosine())
-        .map_err(|(_, message)| refuse(message))?;
     let light = |emission: &Option<SpectrumDescription>| -> Result<Spectrum, SceneError> {
         let spectrum = emission.as_ref().map(SpectrumDescription::light).transpose();
         let spectrum = spectrum.map_err(|(_, message): KeyProblem| refuse(message))?;

@@ -28,7 +28,7 @@ impl fmt::Display for SceneHash {
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     // Only what is given in physical units depends on it.
-    if !canonical.media().any(|medium| medium.preset.is_some()) {
+    if !canonical.media().any(|medium| medium.preset.is_some() || medium.particles.is_some()) {
         canonical.unit.clear();
     }
     canonical.film.exposure = 0.0;
@@ -38,9 +38,12 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     let media =
         canonical.medium.iter_mut().chain(canonical.volumes.iter_mut().map(|volume| &mut volume.medium));
-    let phases = media.filter_map(|medium| medium.phase.as_mut());
-    for file in phases.filter_map(PhaseDescription::file_mut) {
-        *file = content_hash(&folder.join(&file))?;
+    for medium in media {
+        let of_phase = medium.phase.as_mut().and_then(PhaseDescription::file_mut);
+        let of_particles = medium.particles.as_mut().and_then(|particles| particles.material_file.as_mut());
+        for file in of_phase.into_iter().chain(of_particles) {
+            *file = content_hash(&folder.join(&file))?;
+        }
     }
     for volume in &mut canonical.volumes {
         volume.name = None;

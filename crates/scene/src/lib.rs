@@ -24,7 +24,7 @@ pub mod sky;
 mod spectra;
 mod toml;
 
-pub use self::build::{BuiltScene, build, choose_density};
+pub use self::build::{BuiltScene, build, build_with, choose_density};
 pub use self::camera::{Camera, Ray};
 pub use self::channels::{ChannelMedium, ChannelPhases, Channels, Observer, observers};
 pub use self::description::SceneDescription;
@@ -34,7 +34,7 @@ pub use self::hash::{SceneHash, scene_hash};
 pub use self::light::{Light, LightSample};
 pub use self::medium::{ChromaticMedium, Density, Medium, Volume};
 pub use self::mie::{MieSpheres, mie_spheres};
-pub use self::phase::{GREY_WAVELENGTH_NM, build_phase, build_phase_with, grey_phase};
+pub use self::phase::{GREY_WAVELENGTH_NM, build_phase, grey_phase};
 pub use self::ready::Scene;
 pub use self::spectra::{MediumPhase, MediumSpectra, SpectralCoefficients};
 pub use self::toml::{SceneDocument, json_schema};

@@ -23,7 +23,8 @@ pub struct Medium {
     pub emission_per_length: DVec3,
     /// What depends on colour beside albedo and emission; it takes the place of `mu_t` and `phase_function`.
     pub chromatic: Option<Arc<ChromaticMedium>>,
-    /// The same by wavelength; media made in code may lack it.
+    /// The same by wavelength. Without it, as after a change of the other fields in code, colours become spectra that have
+    /// them.
     pub spectra: Option<Arc<MediumSpectra>>,
 }
 

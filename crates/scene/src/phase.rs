@@ -7,23 +7,24 @@ use tyndall_optics::phase_function::{Sggx, SggxKind, read_phase_table};
 use tyndall_optics::{PhaseFunction, SpectralPhase};
 
 use crate::SceneError;
-use crate::description::{PhaseDescription, SggxShape};
-use crate::mie::{BLUE_GREEN_RED_NM, mie_spheres, phase_of_each};
+use crate::description::{ColourMode, PhaseDescription, SggxShape};
+use crate::mie::MieTables;
 
 /// Wavelength, in nm, that stands for all where a picture has no wavelengths.
 pub const GREY_WAVELENGTH_NM: f64 = 550.0;
 
-/// The phase function over wavelength; a table's file name is relative to `folder`, and Lorenz-Mie theory is kept in the
-/// cache that the environment names.
+/// The phase function over wavelength; a table's file name is relative to `folder`. Lorenz-Mie theory is asked for at the
+/// hues of red, green and blue, and kept in the cache that the environment names.
 pub fn build_phase(description: &PhaseDescription, folder: &Path) -> Result<SpectralPhase, SceneError> {
-    build_phase_with(description, folder, &MieCache::from_environment())
+    let cache = MieCache::from_environment();
+    build_phase_with(description, folder, &MieTables::new(ColourMode::Rgb, &cache))
 }
 
-/// The same, with a cache for Lorenz-Mie theory.
-pub fn build_phase_with(
+/// The same, with Lorenz-Mie theory where `tables` asks for it.
+pub(crate) fn build_phase_with(
     description: &PhaseDescription,
     folder: &Path,
-    cache: &MieCache,
+    tables: &MieTables,
 ) -> Result<SpectralPhase, SceneError> {
     let phase = match *description {
         PhaseDescription::Isotropic => PhaseFunction::Isotropic,
@@ -52,18 +53,7 @@ pub fn build_phase_with(
                 None => return Ok(table),
             }
         }
-        PhaseDescription::Mie { wavelength_nm, ref m, x, .. } => {
-            // A size parameter and a constant index: the wavelength does not matter.
-            let is_grey = x.is_some() && m.is_some();
-            let one = wavelength_nm.or(is_grey.then_some(GREY_WAVELENGTH_NM));
-            let wavelengths_nm = one.map_or(BLUE_GREEN_RED_NM.to_vec(), |nm| vec![nm]);
-            return phase_of_each(&wavelengths_nm, |nm| {
-                let spheres = mie_spheres(description, nm, folder, cache)?;
-                spheres
-                    .map(|spheres| spheres.average)
-                    .ok_or_else(|| SceneError::file(Path::new("mie"), "is no phase function of spheres"))
-            });
-        }
+        PhaseDescription::Mie { .. } => return tables.phase(description, folder),
     };
     Ok(phase.into())
 }

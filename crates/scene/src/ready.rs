@@ -18,7 +18,7 @@ pub struct Scene {
     /// Lights.
     pub lights: Vec<Light>,
     /// For each light its spectrum at luminance 1, if that is not the one of its red, green and blue: at a wavelength the
-    /// light is the spectrum times the luminance of what it shines in RGB.
+    /// light is the spectrum times the luminance of what it shines in RGB. Lights beyond its end have none.
     pub light_spectra: Vec<Option<Spectrum>>,
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
     /// well by themselves, and sums to 1 unless it is 0 for all.

@@ -104,7 +104,7 @@ pub enum MediumPhase {
 }
 
 /// Wavelengths, in nm, that have the hues of the primaries red, green and blue of Rec. 709.
-const PRIMARIES_NM: [f64; 3] = [611.4, 549.1, 464.3];
+pub(crate) const PRIMARIES_NM: [f64; 3] = [611.4, 549.1, 464.3];
 
 impl MediumPhase {
     /// The phase function at a wavelength in nm.

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use tyndall_lanes::Random;
-use tyndall_scene::{Density, Ray, Volume};
+use tyndall_scene::{Density, Field, Ray, Volume};
 use tyndall_volumes::BrickGrid;
 
 /// An unbiased estimate of the light that `volume` adds to `ray` per length from 0 to `end`, in red, green and blue.
@@ -28,41 +28,54 @@ pub fn emission_along(volume: &Volume, ray: &Ray, end: f64, random: &mut Random)
 /// An unbiased estimate of the integral, along `ray` from 0 to `end`, of what multiplies the emission per length of
 /// `volume`: its emission grid if it has one, its density otherwise.
 pub fn emitting_length(volume: &Volume, ray: &Ray, end: f64, random: &mut Random) -> f64 {
-    let emission = volume.fields.as_ref().and_then(|fields| fields.emission.as_ref());
-    if let Some((field, scale)) = emission {
-        return scale * integral(&field.grid, &field.local_ray(ray), end, random);
-    }
     let local = volume.local_ray(ray);
+    if let Some((field, scale)) = emission_field(volume) {
+        let Some(range) = within_shape(volume, &local, end) else { return 0.0 };
+        return scale * integral(&field.grid, &field.local_ray(ray), range, random);
+    }
     match &volume.density {
-        Density::Grid(grid) => integral(grid, &local, end, random),
-        _ => volume
-            .interval(&local, end)
-            .and_then(|interval| volume.density_integral(&local, interval))
+        Density::Grid(grid) => integral(grid, &local, (0.0, end), random),
+        _ => within_shape(volume, &local, end)
+            .and_then(|range| volume.density_integral(&local, range))
             .unwrap_or(0.0),
+    }
+}
+
+fn emission_field(volume: &Volume) -> Option<&(Field, f64)> {
+    volume.fields.as_ref().and_then(|fields| fields.emission.as_ref())
+}
+
+/// The part of the ray up to `end` inside the volume's shape; all of it for a density grid, beside which there may be
+/// flames as well.
+fn within_shape(volume: &Volume, local: &Ray, end: f64) -> Option<(f64, f64)> {
+    match &volume.density {
+        Density::Grid(_) => Some((0.0, end)),
+        _ => volume.interval(local, end),
     }
 }
 
 /// Where `volume` may send out light per length along `ray` from 0 to `end`.
 pub(crate) fn emitting_stretch(volume: &Volume, ray: &Ray, end: f64) -> Option<(f64, f64)> {
-    let emission = volume.fields.as_ref().and_then(|fields| fields.emission.as_ref());
-    match emission {
-        Some((field, _)) => field.interval(&field.local_ray(ray), end),
-        None => volume.interval(&volume.local_ray(ray), end),
-    }
+    let local = volume.local_ray(ray);
+    let Some((field, _)) = emission_field(volume) else { return volume.interval(&local, end) };
+    let (start, end) = within_shape(volume, &local, end)?;
+    let (enter, leave) = field.interval(&field.local_ray(ray), end)?;
+    let enter = enter.max(start);
+    (enter < leave).then_some((enter, leave))
 }
 
 /// What multiplies the emission per length of `volume` at a distance inside its [`emitting_stretch`].
 pub(crate) fn emission_factor_along(volume: &Volume, ray: &Ray, t: f64) -> f64 {
-    if volume.fields.as_ref().is_some_and(|fields| fields.emission.is_some()) {
-        return volume.emission_factor(ray.at(t));
+    match emission_field(volume) {
+        Some(_) => volume.emission_factor(ray.at(t)),
+        None => volume.density_at(volume.local_ray(ray).at(t)),
     }
-    volume.density_at(volume.local_ray(ray).at(t))
 }
 
 /// An unbiased estimate of the integral of a grid's values along a ray in the coordinates of its filter.
-fn integral(grid: &BrickGrid, local: &Ray, end: f64, random: &mut Random) -> f64 {
+fn integral(grid: &BrickGrid, local: &Ray, range: (f64, f64), random: &mut Random) -> f64 {
     let mut sum = 0.0;
-    let _ = grid.segments::<()>(local.origin, local.direction, (0.0, end), |segment| {
+    let _ = grid.segments::<()>(local.origin, local.direction, range, |segment| {
         if segment.bounds.max > 0.0 {
             let length = segment.end - segment.start;
             sum += length * grid.value(local.at(segment.start + random.f64() * length));

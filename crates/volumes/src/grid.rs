@@ -127,3 +127,35 @@ impl Grid {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_components_of_vectors_are_grids_in_the_same_place() {
+        let leaf = Leaf { origin: [8, 0, -8], active: [3; 8] };
+        let tile = Tile { origin: [0, 0, 0], log2_edge: 3, value: [4.0, 5.0, 6.0], active: true };
+        let tree = Tree {
+            background: [1.0, 2.0, 3.0],
+            tiles: vec![tile],
+            leaves: vec![leaf],
+            leaf_values: (0..LEAF_VOXELS).map(|i| [i as f32, 0.5, -(i as f32)]).collect(),
+        };
+        let grid = Grid {
+            name: "Cd".into(),
+            class: GridClass::Unknown,
+            index_to_world: DAffine3::from_scale(glam::DVec3::splat(0.5)),
+            saved_as_half: false,
+            codec: "none".into(),
+            metadata: Vec::new(),
+            values: GridValues::Vec3(tree),
+        };
+        let last = grid.component(2).expect("vectors have components");
+        assert_eq!((last.name.as_str(), last.index_to_world), ("Cd", grid.index_to_world));
+        let GridValues::Float(tree) = &last.values else { panic!("{last:?}") };
+        assert_eq!((tree.background, tree.tiles[0].value, tree.leaves[0]), (3.0, 6.0, leaf));
+        assert_eq!((tree.leaf_values[7], tree.leaf_values.len()), (-7.0, LEAF_VOXELS));
+        assert!(last.component(0).is_none());
+    }
+}

@@ -67,7 +67,8 @@ pub struct Homogeneous {
 pub struct RelativeVariance {
     pub name: &'static str,
     pub kind: Kind,
-    pub relative_variance: f64,
+    /// None where too few samples decide over it.
+    pub relative_variance: Option<f64>,
 }
 
 /// Number of places at which the true density of collisions is given.
@@ -141,6 +142,7 @@ pub fn homogeneous_family(seed: u64) -> Vec<Homogeneous> {
             let effort = Effort { samples: Some(HOMOGENEOUS_SAMPLES), seed, stream };
             let trial = Trial::run(estimator, &ray, &truths, effort);
             let relative_variance = if trial.exact { 0.0 } else { trial.variance / trial.truth.powi(2) };
+            let relative_variance = trial.variance_is_known().then_some(relative_variance);
             RelativeVariance { name: trial.name, kind: trial.kind, relative_variance }
         });
         Homogeneous { optical_thickness, estimators: estimators.collect() }

@@ -65,12 +65,12 @@ impl Figure {
     /// What is shown.
     pub fn caption(self, report: &Report) -> String {
         let main = main_ray(report).map_or(String::new(), |(number, ray)| {
-            format!("ray {number}, optical thickness {}", super::table::number(ray.optical_thickness))
+            format!("ray {number}, optical thickness {}", super::table::short(ray.optical_thickness))
         });
         match self {
             Self::Variance => {
-                "Variance of a sample over the squared true value. Lines: homogeneous media under a \
-                               majorant of twice the extinction. Dots: rays of this scene."
+                "Variance of a sample over the squared truth. Lines: homogeneous media under twice their extinction as \
+                               majorant. Dots: this scene's rays. Doubtful ones are left out."
                     .into()
             }
             Self::Convergence => format!(
@@ -85,7 +85,9 @@ impl Figure {
                     "Weight of the sampled collisions by distance; the line is the truth, the integral of mu_t T. On {main}."
                 )
             }
-            Self::Efficiency => "1/(variance x seconds a sample), a bar a ray; longer is better.".into(),
+            Self::Efficiency => {
+                "1/(variance x seconds a sample), a bar a ray; longer is better, * is biased.".into()
+            }
             Self::Lookups => {
                 "Mean number of times that a sample asks for the extinction at a place, a bar a ray.".into()
             }

@@ -17,7 +17,7 @@ body{font:15px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:980
 h1{font-size:1.5em}h2{font-size:1.15em;margin:2em 0 .3em}p{margin:.3em 0 .8em}\
 table{border-collapse:collapse;font-size:13px;margin:.6em 0 1.4em;width:100%}\
 th{text-align:right;font-weight:600;border-bottom:1px solid #444}td{text-align:right;border-bottom:1px solid #e5e5e5}\
-th,td{padding:2px 8px}th:first-child,td:first-child,.left td,.left th{text-align:left}\
+th,td{padding:2px 8px}td:first-child{white-space:nowrap}th:first-child,td:first-child,.left td,.left th{text-align:left}\
 caption{text-align:left;font-weight:600;padding:4px 8px}.off{color:#b33c00;font-weight:600}\
 figure{margin:1em 0}figure svg{max-width:100%;height:auto}";
 

@@ -74,11 +74,9 @@ pub fn render_all(
     for estimator in Estimator::all() {
         let (name, kind) = (estimator.properties().name, estimator.kind());
         match chosen(estimator).validate(&small) {
-            _ if small.is_chromatic() => {
-                let reason = format!(
-                    "{name}: extinction depends on colour, for which the spectral integrator has its own"
-                );
-                refused.push(Refused { name, kind, reason });
+            _ if small.is_spectral() => {
+                let reason = "the spectral integrator renders this scene, with estimators of its own";
+                refused.push(Refused { name, kind, reason: reason.into() });
             }
             Ok(()) => choices.push((Some(estimator), chosen(estimator))),
             Err(reason) => refused.push(Refused { name, kind, reason: reason.to_string() }),

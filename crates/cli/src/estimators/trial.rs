@@ -209,13 +209,29 @@ pub struct Convergence {
     pub batches: u64,
 }
 
+/// Relative uncertainty of a standard error from which on it is doubtful.
+const DOUBTFUL: f64 = 0.3;
+
 impl Trial {
+    /// Whether a few samples decide over the standard error.
+    pub fn error_is_doubtful(&self) -> bool {
+        self.standard_error_uncertainty > DOUBTFUL
+    }
+
+    /// Whether the variance can be believed: rare samples that make it up have been met if the mean is right.
+    pub fn variance_is_known(&self) -> bool {
+        let mean_is_right = self.z.is_some_and(|z| z.abs() < 5.0);
+        !self.error_is_doubtful() && (mean_is_right || !self.unbiased)
+    }
+
     /// Samples `estimator` on a ray that it can be used on.
     pub fn run(estimator: Estimator, ray: &AlongRay, truths: &Truths, effort: Effort) -> Self {
         let first = Samples::draw(estimator, ray, truths, effort, FIRST_LOOK);
         let truth = truths.of_kind(estimator.kind());
         if first.is_exact(truth) {
-            return Self::of(estimator, truths, first);
+            // The first look finds memory cold; the second is as fast as all others would be.
+            let second = Samples::draw(estimator, ray, truths, effort, FIRST_LOOK);
+            return Self::of(estimator, truths, second);
         }
         let by_cost = (MOST_LOOKUPS / first.found.lookups.max(1.0)) as u64;
         let samples = effort.samples.unwrap_or(by_cost.clamp(FIRST_LOOK, MOST_SAMPLES));

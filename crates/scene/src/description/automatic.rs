@@ -288,14 +288,14 @@ fn notes(summary: &VolumeSummary) -> Vec<(Vec<String>, String)> {
         Glow::Temperature { max, .. } => (
             path(&["volume", "0", "temperature"]),
             format!(
-                "Taken for kelvin, {} at most: the volume glows; without this key it does not.",
+                "Taken for kelvin, {} at most: the volume glows; without this key and `emission_scale` it does not.",
                 round_to(*max, 1.0)
             ),
         ),
         Glow::Flame { max, .. } => (
             path(&["volume", "0", "emission_grid"]),
             format!(
-                "Taken for flames, {} at most: they shine; without both keys they do not.",
+                "Taken for flames, {} at most: they shine; without this key and `emission_per_length` they do not.",
                 round_to(*max, 1e-3 * max)
             ),
         ),

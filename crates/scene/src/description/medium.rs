@@ -10,12 +10,14 @@ use tyndall_optics::albedo_inversion::albedo_of_reflectance;
 use tyndall_optics::presets::{MEASURED_MEDIA, MeasuredMedium, measured_medium};
 
 use super::PhaseDescription;
+use super::particles::ParticlesDescription;
 use super::spectrum::{KeyProblem, SpectrumDescription, fraction, positive};
 use super::units::unit_in_metres;
 use crate::SpectralCoefficients;
 
 /// The optical properties of a medium. Coefficients are given in exactly one way: `mu_t` and `albedo`, `mu_a` and
-/// `mu_s`, `mean_free_path` and `albedo`, `mean_free_path` and `reflectance`, or a `preset`.
+/// `mu_s`, `mean_free_path` and `albedo`, `mean_free_path` and `reflectance`, a `preset`, or
+/// `particles`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MediumDescription {
     /// Extinction coefficient, per scene unit.
@@ -42,6 +44,9 @@ pub struct MediumDescription {
     /// Name of a measured medium (Jensen et al. 2001, Narasimhan et al. 2006), such as `skimmilk`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preset: Option<String>,
+    /// Spheres by Lorenz-Mie theory, which gives the phase function too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub particles: Option<ParticlesDescription>,
     /// Factor on the coefficients.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
@@ -53,14 +58,14 @@ pub struct MediumDescription {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emission: Option<SpectrumDescription>,
     /// Radiance per scene unit that the medium adds to a ray, whatever it absorbs; multiplied by the density, or by the
-    /// `emission_grid` if there is one.
+    /// `emission_grid` if there is one (inside a shape; beside a density grid as well).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emission_per_length: Option<SpectrumDescription>,
 }
 
 /// The ways to give coefficients, for messages.
 const WAYS: &str = "give exactly one of the pairs `mu_t` + `albedo`, `mean_free_path` + `albedo`, \
-                    `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`";
+                    `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, a `preset`, or `particles`";
 
 /// Greatest extinction: products of a few such numbers stay finite.
 const GREATEST: f64 = 1e30;
@@ -69,6 +74,8 @@ impl MediumDescription {
     /// The coefficients, per scene unit, in whichever way they were given; or the path of the key that is wrong (empty
     /// for the medium itself) and the mend.
     ///
+    /// Those of particles are computed when the scene is built, see [`particles_violation`](Self::particles_violation).
+    ///
     /// `unit` is the name of the scene's unit, which measured media need; `g` is the mean cosine of the phase function,
     /// which a reflectance needs.
     pub fn coefficients(
@@ -76,6 +83,9 @@ impl MediumDescription {
         unit: &str,
         g: f64,
     ) -> Result<SpectralCoefficients, (Vec<&'static str>, String)> {
+        if self.particles.is_some() {
+            return Err(self.wrong_pair());
+        }
         type Form = Option<SpectrumDescription>;
         let read = |key: &'static str,
                     form: &Form,
@@ -130,6 +140,22 @@ impl MediumDescription {
         Ok(coefficients)
     }
 
+    /// The path of the key of `particles` that is wrong, or that is given beside them, and the mend.
+    pub fn particles_violation(&self, unit: &str) -> Option<(Vec<&'static str>, String)> {
+        let particles = self.particles.as_ref()?;
+        let ways =
+            [&self.mu_t, &self.mean_free_path, &self.albedo, &self.reflectance, &self.mu_a, &self.mu_s];
+        if ways.into_iter().any(Option::is_some) || self.preset.is_some() {
+            return Some(self.wrong_pair());
+        }
+        if let Err(message) = unit_in_metres(unit) {
+            return Some((vec!["particles"], format!("particles are in physical units: {message}")));
+        }
+        let (key, message) = particles.violation()?;
+        let path = ["particles", key].into_iter().filter(|key| !key.is_empty()).collect();
+        Some((path, message))
+    }
+
     /// Mean cosine of the preset's phase function, if it was measured and `phase` does not say otherwise.
     pub fn preset_g(&self) -> Option<Spectrum> {
         let measured = self.measured().ok().filter(|_| self.phase.is_none())?;
@@ -164,6 +190,7 @@ impl MediumDescription {
             ("mu_a", self.mu_a.is_some()),
             ("mu_s", self.mu_s.is_some()),
             ("preset", self.preset.is_some()),
+            ("particles", self.particles.is_some()),
         ]
         .into_iter()
         .filter_map(|(key, is_given)| is_given.then_some(key))

@@ -33,7 +33,7 @@ pub struct ParticlesDescription {
     pub number_density: Option<Quantity>,
     /// Fraction of the volume that the particles fill.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub volume_fraction: Option<f64>,
     /// Mass of a volume of what the particles are made of, such as `"2.6 g/cm3"`; that of a material is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -62,8 +62,8 @@ impl ParticlesDescription {
         };
         let read = |key: &'static str, quantity: &Option<Quantity>, units: &[(&str, f64)]| match quantity {
             Some(quantity) => match quantity.in_units(units) {
-                Ok(value) if value >= 0.0 => Ok(value),
-                Ok(value) => Err((key, format!("`{key}` must be at least 0, not {value}"))),
+                Ok(value) if value > 0.0 => Ok(value),
+                Ok(value) => Err((key, format!("`{key}` must be above 0, not {value}"))),
                 Err(message) => Err((key, format!("`{key}`: {message}"))),
             },
             None => Ok(0.0),

@@ -25,6 +25,9 @@ pub const CONCENTRATIONS: [(&str, f64); 5] =
 pub const NUMBER_DENSITIES: [(&str, f64); 5] =
     [("/cm3", 1.0), ("/m3", 1e-6), ("/mm3", 1e3), ("cm-3", 1.0), ("m-3", 1e-6)];
 
+/// No number with a unit is longer.
+const LONGEST: usize = 64;
+
 impl Quantity {
     /// The number in terms of `units`: names, with their size in the unit of the result. Or what is wrong.
     pub fn in_units(&self, units: &[(&str, f64)]) -> Result<f64, String> {
@@ -42,14 +45,15 @@ impl Quantity {
                 ));
             }
         };
-        let plain =
-            text.trim().replace(['µ', 'μ'], "u").replace('³', "3").replace(['^', ' '], "").replace("1/", "/");
-        // The unit begins where no number is any more: `e` belongs to the number only if digits follow.
-        let split = (0..=plain.len()).rev().filter(|end| plain.is_char_boundary(*end));
-        let parsed = split.filter_map(|end| Some((plain[..end].parse::<f64>().ok()?, &plain[end..]))).next();
+        // The number is the longest beginning that is one: the `e` of 1e5 belongs to it only if digits follow.
+        let text = text.trim();
+        let ends = (0..=text.len().min(LONGEST)).rev().filter(|end| text.is_char_boundary(*end));
+        let parsed = ends.filter_map(|end| Some((text[..end].parse::<f64>().ok()?, &text[end..]))).next();
         let Some((number, unit)) = parsed.filter(|(number, _)| number.is_finite()) else {
             return Err(format!("\"{text}\" is no number with a unit, such as \"10 {}\"", units[0].0));
         };
+        let unit = unit.replace(['µ', 'μ'], "u").replace('³', "3").replace(['^', ' '], "");
+        let unit = unit.strip_prefix('1').filter(|rest| rest.starts_with('/')).unwrap_or(&unit);
         match units.iter().find(|(name, _)| *name == unit) {
             Some((_, size)) => Ok(number * size),
             None => Err(format!("\"{text}\" has none of the units {}", names())),
@@ -89,6 +93,9 @@ mod tests {
         }
         for text in ["0.3 g/m3", "0.3 g/m^3", "0.3g/m³", "300 mg/m3", "3e-7 g/cm3"] {
             assert!((read(text, &CONCENTRATIONS).unwrap() / 0.3 - 1.0).abs() < 1e-12, "{text}");
+        }
+        for (text, expected) in [("1 /cm3", 1.0), ("11 /cm3", 11.0), ("1/cm3", 1.0), ("2 1/cm3", 2.0)] {
+            assert_eq!(read(text, &NUMBER_DENSITIES), Ok(expected), "{text}");
         }
         for text in ["100 /cm3", "100 1/cm3", "100cm-3", "100 cm^-3", "1e8 /m3", "1e8 m-3"] {
             assert!((read(text, &NUMBER_DENSITIES).unwrap() / 100.0 - 1.0).abs() < 1e-12, "{text}");

@@ -124,7 +124,11 @@ fn film(found: &mut Findings, scene: &SceneDescription) {
 }
 
 fn medium_rules(found: &mut Findings, medium: &MediumDescription, unit: &str) {
-    if let Err((path, message)) = medium.coefficients(unit, 0.0) {
+    let violation = match &medium.particles {
+        Some(_) => medium.particles_violation(unit),
+        None => medium.coefficients(unit, 0.0).err(),
+    };
+    if let Some((path, message)) = violation {
         report_at(found, &path, message);
     }
     for (key, emission) in

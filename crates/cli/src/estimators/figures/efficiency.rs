@@ -2,13 +2,15 @@
 
 use super::WIDTH;
 use crate::estimators::Report;
-use crate::estimators::table::{by_efficiency, by_picture_efficiency, kind_name, number, starred};
+use crate::estimators::table::{by_efficiency, by_picture_efficiency, kind_name, short, starred};
 use crate::estimators::trial::{Kind, Trial};
 use crate::plot::{Anchor, Bar, Bars, COLOURS, Svg};
 
 /// Where bars start.
 const LEFT: f64 = 250.0;
 const RIGHT: f64 = WIDTH - 30.0;
+/// Where those of pictures do, whose names are longer.
+const LEFT_OF_PICTURES: f64 = 290.0;
 
 pub fn draw_efficiency(svg: &mut Svg, top: f64, report: &Report) -> f64 {
     let bar = |trial: &Trial| match trial.efficiency {
@@ -31,7 +33,7 @@ fn both_kinds(svg: &mut Svg, top: f64, report: &Report, x_name: &str, bar: impl 
     let mut x = LEFT;
     for (number_of_ray, (ray, colour)) in (1..).zip(report.rays.iter().zip(COLOURS.iter().cycle())) {
         svg.bar(colour, [x, top + 2.0], [x + 14.0, top + 12.0]);
-        let name = format!("ray {number_of_ray}, optical thickness {}", number(ray.optical_thickness));
+        let name = format!("ray {number_of_ray}, optical thickness {}", short(ray.optical_thickness));
         svg.text("small", Anchor::Start, [x + 20.0, top + 11.0], &name);
         x += 210.0;
     }
@@ -79,7 +81,7 @@ pub fn draw_pictures(svg: &mut Svg, top: f64, report: &Report) -> f64 {
         })
         .collect();
     let numbers = pictures.estimators.iter().filter_map(|picture| picture.efficiency);
-    let bars = Bars::new([LEFT, top + 4.0, RIGHT], 1, numbers);
+    let bars = Bars::new([LEFT_OF_PICTURES, top + 4.0, RIGHT], 1, numbers);
     bars.draw(svg, "efficiency, 1/s", &COLOURS, &rows);
     top + 4.0 + bars.height(rows.len())
 }

@@ -20,7 +20,7 @@ fn draw_kind(svg: &mut Svg, top: f64, report: &Report, kind: Kind) -> f64 {
         .rays
         .iter()
         .flat_map(|ray| ray.estimators.iter().map(|trial| (ray.optical_thickness, trial)))
-        .filter(|(_, trial)| trial.kind == kind && !trial.exact)
+        .filter(|(_, trial)| trial.kind == kind && !trial.exact && trial.variance_is_known())
         .map(|(tau, trial)| (tau, trial, trial.variance / trial.truth.powi(2)))
         .collect();
     let names: Vec<&'static str> = report
@@ -54,15 +54,15 @@ fn draw_kind(svg: &mut Svg, top: f64, report: &Report, kind: Kind) -> f64 {
     top + PANEL_HEIGHT
 }
 
-/// Less is rounding, more the lack of any light.
+/// Less is as good as exact, and more as good as none.
 fn shown(relative_variance: f64) -> bool {
-    (1e-14..1e14).contains(&relative_variance)
+    (1e-7..1e5).contains(&relative_variance)
 }
 
 /// (optical thickness, relative variance) in homogeneous media.
 fn line<'a>(report: &'a Report, kind: Kind, name: &'a str) -> impl Iterator<Item = (f64, f64)> + 'a {
     report.homogeneous.iter().filter_map(move |medium| {
         let of_name = medium.estimators.iter().find(|found| (found.kind, found.name) == (kind, name))?;
-        Some((medium.optical_thickness, of_name.relative_variance))
+        Some((medium.optical_thickness, of_name.relative_variance?))
     })
 }
