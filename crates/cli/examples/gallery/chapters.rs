@@ -210,9 +210,9 @@ pub const CHAPTERS: &[Chapter] = &[
         "17_rainbow_and_glory",
         3,
         &[
-            panel("scene.toml", "droplets of 10 μm: fogbow, glory"),
+            panel("scene.toml", "10 μm: fogbow and glory"),
             panel("scene.toml --set volume.0.phase.distribution.r_eff=50um", "50 μm"),
-            panel("scene.toml --set volume.0.phase.distribution.r_eff=500um", "500 μm: rain"),
+            panel("scene.toml --set volume.0.phase.distribution.r_eff=500um", "500 μm: rain, two bows"),
         ],
     ),
     panels(
