@@ -16,7 +16,12 @@ impl Axes {
     pub fn new(frame: [f64; 4], x: [f64; 2], kind: Kind, values: impl Iterator<Item = f64>) -> Axes {
         let [left, top, right, bottom] = frame;
         let x = Scale::new(Kind::Linear, x, [left, right]);
-        Axes { x, y: Scale::around(kind, values, [bottom, top]), frame }
+        Axes::with_scales(frame, x, Scale::around(kind, values, [bottom, top]))
+    }
+
+    /// A frame with two scales that fit it.
+    pub fn with_scales(frame: [f64; 4], x: Scale, y: Scale) -> Axes {
+        Axes { x, y, frame }
     }
 
     /// A frame between `left`, `top`, `right`, `bottom` with scales of a kind around the values of both.
@@ -27,7 +32,7 @@ impl Axes {
     ) -> Axes {
         let [left, top, right, bottom] = frame;
         let x = Scale::around(x_kind, x_values, [left, right]);
-        Axes { x, y: Scale::around(y_kind, y_values, [bottom, top]), frame }
+        Axes::with_scales(frame, x, Scale::around(y_kind, y_values, [bottom, top]))
     }
 
     /// Draws the frame, with grid, ticks and names; `x_step` between the ticks of x, if they are not to be chosen.
@@ -85,7 +90,8 @@ impl Axes {
         svg.styled_curve(colour, "stroke-width=\"1\"", [Some([x, top]), Some([x, bottom])]);
     }
 
-    fn place(&self, x: f64, y: f64) -> Option<[f64; 2]> {
+    /// The place of a point, if it has one.
+    pub fn place(&self, x: f64, y: f64) -> Option<[f64; 2]> {
         Some([self.x.at(x)?, self.y.at(y)?])
     }
 }
