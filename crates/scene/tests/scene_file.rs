@@ -147,7 +147,7 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         (
             format!("{volume}preset = 'Whole milk'\nmu_t = 2"),
             "scene.toml:6:1: the coefficients are given as `mu_t` and `preset`: give exactly one of the pairs `mu_t` + \
-             `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`",
+             `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, a `preset`, or `particles`",
         ),
         (
             format!("{volume}preset = 'Hole milk'"),
@@ -204,12 +204,12 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         (
             format!("{volume}mu_t = 1"),
             "scene.toml:4:1: `mu_t` alone does not say the coefficients: give exactly one of the pairs \
-             `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`",
+             `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, a `preset`, or `particles`",
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 1\nmu_a = 1"),
             "scene.toml:8:1: the coefficients are given as `mu_t` and `albedo` and `mu_a`: give exactly one of the \
-             pairs `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, or a `preset`",
+             pairs `mu_t` + `albedo`, `mean_free_path` + `albedo`, `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, a `preset`, or `particles`",
         ),
         (
             "[[volume]]\nmu_t = 1\nalbedo = 1".to_owned(),

@@ -1,7 +1,9 @@
 //! Many spheres of different radii: cross sections and phase function of the mean particle.
 //!
-//!     C = ∫ C(r) n(r) dr / ∫ n(r) dr        Q = ∫ C(r) n(r) dr / ∫ πr² n(r) dr
-//!     g = ∫ g(r) Csca(r) n(r) dr / ∫ Csca(r) n(r) dr        f_p = ∫ (dCsca/dΩ)(r) n(r) dr / ∫ Csca(r) n(r) dr
+//! ```text
+//! C = ∫ C(r) n(r) dr / ∫ n(r) dr        Q = ∫ C(r) n(r) dr / ∫ πr² n(r) dr
+//! g = ∫ g(r) Csca(r) n(r) dr / ∫ Csca(r) n(r) dr        f_p = ∫ (dCsca/dΩ)(r) n(r) dr / ∫ Csca(r) n(r) dr
+//! ```
 //!
 //! (Hansen & Travis 1974, section 2.4). Steps of the quadrature are halved, which keeps all radii computed before, until
 //! nothing changes: resonances of single spheres, far narrower than a step, otherwise leave some percent of noise in the

@@ -2,9 +2,11 @@
 //!
 //! A file's name is a hash of everything that its content follows from; its content is
 //!
-//!     "TYNDMIE1"   hash of the inputs (32 bytes)   number of angles (u64)
-//!     wavelength, Qext, Qsca, Qabs, g, area, volume, two changes (f64)   angles (f64 …)   phase function (f64 …)
-//!     SHA-256 of all of that
+//! ```text
+//! "TYNDMIE1"   hash of the inputs (32 bytes)   number of angles (u64)
+//! wavelength, Qext, Qsca, Qabs, g, area, volume, two changes (f64)   angles (f64 …)   phase function (f64 …)
+//! SHA-256 of all of that
+//! ```
 //!
 //! little-endian. A file that is missing, damaged or cannot be written costs the computation and nothing else.
 

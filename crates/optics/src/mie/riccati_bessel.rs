@@ -1,6 +1,8 @@
 //! Riccati-Bessel functions, each by the recurrence that is stable for it.
 //!
-//!     fₙ₊₁(z) = (2n+1)/z fₙ(z) − fₙ₋₁(z)    for f = ψ, χ        ψ₀ = sin z, χ₀ = cos z        ρₙ = ψₙ/ψₙ₋₁
+//! ```text
+//! fₙ₊₁(z) = (2n+1)/z fₙ(z) − fₙ₋₁(z)    for f = ψ, χ        ψ₀ = sin z, χ₀ = cos z        ρₙ = ψₙ/ψₙ₋₁
+//! ```
 //!
 //! (Abramowitz & Stegun 1964, 10.1.19 and 10.3). χ grows with n beyond z and is computed upward; ψ falls there and would
 //! drown in χ, so that its ratios are computed downward (Miller's algorithm; Wiscombe 1980).

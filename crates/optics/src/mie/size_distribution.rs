@@ -1,9 +1,11 @@
 //! How many particles there are of each radius r: n(r) dr, normalised to anything.
 //!
-//!     gamma           n ∝ r^{(1−3b)/b} exp(−r/(ab))        a = r_eff, b = v_eff    (Hansen & Travis 1974, eq. 2.56)
-//!     log-normal      n ∝ exp(−ln²(r/r_g) / (2 ln² σ_g)) / r                       (ibid., eq. 2.60, with ln σ_g for σ_g)
-//!     modified gamma  n ∝ r^α exp(−(α/γ)(r/r_mode)^γ)                              (Deirmendjian 1969)
-//!     power law       n ∝ r^{−p}
+//! ```text
+//! gamma           n ∝ r^{(1−3b)/b} exp(−r/(ab))        a = r_eff, b = v_eff    (Hansen & Travis 1974, eq. 2.56)
+//! log-normal      n ∝ exp(−ln²(r/r_g) / (2 ln² σ_g)) / r                       (ibid., eq. 2.60, with ln σ_g for σ_g)
+//! modified gamma  n ∝ r^α exp(−(α/γ)(r/r_mode)^γ)                              (Deirmendjian 1969)
+//! power law       n ∝ r^{−p}
+//! ```
 //!
 //! The effective radius is ∫ r³n dr / ∫ r²n dr, and the effective variance ∫ (r − r_eff)² r²n dr / (r_eff² ∫ r²n dr).
 

@@ -3,8 +3,10 @@
 //! With the size x = 2πr/λ, the refractive index m relative to the medium around, and the Riccati-Bessel functions
 //! ψₙ(z) = z jₙ(z), χₙ(z) = −z yₙ(z), ξₙ = ψₙ − iχₙ,
 //!
-//!     aₙ = [ψₙ′(mx) ψₙ(x) − m ψₙ(mx) ψₙ′(x)] / [ψₙ′(mx) ξₙ(x) − m ψₙ(mx) ξₙ′(x)]
-//!     bₙ = [m ψₙ′(mx) ψₙ(x) − ψₙ(mx) ψₙ′(x)] / [m ψₙ′(mx) ξₙ(x) − ψₙ(mx) ξₙ′(x)]
+//! ```text
+//! aₙ = [ψₙ′(mx) ψₙ(x) − m ψₙ(mx) ψₙ′(x)] / [ψₙ′(mx) ξₙ(x) − m ψₙ(mx) ξₙ′(x)]
+//! bₙ = [m ψₙ′(mx) ψₙ(x) − ψₙ(mx) ψₙ′(x)] / [m ψₙ′(mx) ξₙ(x) − ψₙ(mx) ξₙ′(x)]
+//! ```
 //!
 //! Both are (ψₙ₊₁ − Cₙψₙ)/(ξₙ₊₁ − Cₙξₙ), where Cₙ = m ρₙ₊₁(mx) for bₙ, Cₙ = ρₙ₊₁(mx)/m + (1 − m⁻²)(n+1)/x for aₙ, and
 //! ρₙ = ψₙ/ψₙ₋₁. In that form small spheres lose no digits. The Wronskian ψₙ₊₁χₙ − ψₙχₙ₊₁ = −1 makes
