@@ -56,7 +56,7 @@ pub enum Layer {
     Albedo,
     /// Fraction of the background that is seen.
     Transmittance,
-    /// Light emitted by the medium that was not scattered.
+    /// Light emitted by media, whether it was scattered afterwards or not.
     Emission,
     /// Light scattered once.
     Single,
