@@ -14,6 +14,7 @@ use tyndall_scene::{Channels, ChromaticMedium, Ray, Scene};
 use tyndall_transport::SpectralScene;
 
 use crate::agreement::{Batches, HEAD, assert_same, assert_same_batches, batches};
+use crate::effort::is_full;
 use crate::rendering::render;
 use crate::scenes::{scene, scene_in, two_halves, with_next_event, write_random_npy};
 use crate::slab::{Row, rows};
@@ -147,8 +148,7 @@ fn slab(rows: &[Row], lit_from_above: bool, next_event: bool) -> Scene {
 /// other seeds one in a thousand runs would fail by the law of the z scores, and few by a single score.
 #[test]
 fn a_slab_of_three_media_reflects_and_transmits_what_adding_doubling_says_of_each() {
-    let is_full = std::env::var("TYNDALL_PROOF").is_ok_and(|effort| effort == "full");
-    let paths: u64 = if is_full { 32_768 } else { 2048 };
+    let paths: u64 = if is_full() { 32_768 } else { 2048 };
     let rows = rows();
     let third = rows.len() / 3;
     let mut scores: [Vec<f64>; 6] = Default::default();

@@ -5,6 +5,7 @@
 
 mod agreement;
 mod chromatic;
+mod effort;
 mod emission;
 mod estimators;
 mod phase_functions;

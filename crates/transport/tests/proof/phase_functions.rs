@@ -13,6 +13,7 @@ use std::path::Path;
 use glam::DVec3;
 use tyndall_scene::Scene;
 
+use crate::effort::is_full;
 use crate::rendering::{BOTH, render};
 use crate::scenes::{scene, scene_in, with_next_event, write_random_npy};
 use crate::statistics::two_sided_quantile;
@@ -25,7 +26,7 @@ const FLAKES: &str = r#"{ type = "sggx", kind = "surface", roughness = 0.3, axis
 
 /// Ten times the samples under `TYNDALL_PROOF=full`.
 fn samples(few: u64) -> u64 {
-    if std::env::var_os("TYNDALL_PROOF").is_some_and(|effort| effort == "full") { 10 * few } else { few }
+    if is_full() { 10 * few } else { few }
 }
 
 fn furnaces(folder: &Path, phase: &str) -> [Scene; 2] {

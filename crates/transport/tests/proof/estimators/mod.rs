@@ -14,5 +14,5 @@ mod rays;
 
 /// Factor on the numbers of samples.
 fn effort() -> u64 {
-    if std::env::var("TYNDALL_PROOF").is_ok_and(|value| value == "full") { 10 } else { 1 }
+    if crate::effort::is_full() { 10 } else { 1 }
 }

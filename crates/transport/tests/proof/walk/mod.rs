@@ -15,11 +15,12 @@ use glam::DVec3;
 use tyndall_optics::PhaseFunction;
 use tyndall_transport::walk::{Estimate, Goal, Incidence, LayerFluxes, Slab, WalkOptions};
 
+use crate::effort::is_full;
 use crate::statistics::{kolmogorov_smirnov, normal_cdf, two_sided_quantile};
 
 /// `photons`, or sixteen times as many if `TYNDALL_PROOF` is `full`.
 pub fn photons(photons: u64) -> u64 {
-    if std::env::var("TYNDALL_PROOF").is_ok_and(|effort| effort == "full") { 16 * photons } else { photons }
+    if is_full() { 16 * photons } else { photons }
 }
 
 /// So many photons on two threads.
