@@ -5,7 +5,7 @@ use std::sync::Arc;
 use tyndall_optics::PhaseFunction;
 use tyndall_volumes::BrickGrid;
 
-use crate::{Fields, MediumSpectra, Ray};
+use crate::{Exponential, Fields, MediumSpectra, Ray};
 
 /// What a medium does to light where its density is 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,7 +151,7 @@ impl Volume {
         match &self.density {
             Density::Grid(_) => None,
             Density::Atmosphere { bottom, scale_height, .. } => {
-                Some(Exponential::along(local, *bottom, *scale_height).integral(start, end))
+                Some(Exponential::of_atmosphere(local, *bottom, *scale_height).integral(start, end))
             }
             _ => Some(end - start),
         }
@@ -163,7 +163,8 @@ impl Volume {
         match &self.density {
             Density::Grid(_) => f64::INFINITY,
             Density::Atmosphere { bottom, scale_height, .. } => {
-                Exponential::along(local, *bottom, *scale_height).distance_of_integral(start, integral)
+                Exponential::of_atmosphere(local, *bottom, *scale_height)
+                    .distance_of_integral(start, integral)
             }
             _ => start + integral,
         }
@@ -189,53 +190,6 @@ impl Volume {
         let min = (1..8).fold(corner(0), |least, i| least.min(corner(i)));
         let max = (1..8).fold(corner(0), |greatest, i| greatest.max(corner(i)));
         Some([min, max])
-    }
-}
-
-/// A density that is an exponential function along a ray: e^(logarithm − rate·t).
-struct Exponential {
-    logarithm: f64,
-    rate: f64,
-}
-
-impl Exponential {
-    fn along(local: &Ray, bottom: f64, scale_height: f64) -> Exponential {
-        Exponential {
-            logarithm: -(local.origin.y - bottom) / scale_height,
-            rate: local.direction.y / scale_height,
-        }
-    }
-
-    fn integral(&self, start: f64, end: f64) -> f64 {
-        let first = (self.logarithm - self.rate * start).exp();
-        let exponent = self.rate * (end - start);
-        // (1 − e^−x)/x is 1 − x/2 to double precision below 1e-9, where the quotient loses its digits.
-        if self.rate == 0.0 {
-            first * (end - start)
-        } else if exponent.abs() < 1e-9 {
-            first * (end - start) * (1.0 - 0.5 * exponent)
-        } else {
-            first * -(-exponent).exp_m1() / self.rate
-        }
-    }
-
-    fn distance_of_integral(&self, start: f64, integral: f64) -> f64 {
-        let logarithm = self.logarithm - self.rate * start;
-        // The distance over which the density at the start would give the integral.
-        let constant = integral * (-logarithm).exp();
-        let exponent = self.rate * constant;
-        if self.rate == 0.0 {
-            start + constant
-        } else if exponent.abs() < 1e-9 {
-            start + constant * (1.0 + 0.5 * exponent)
-        } else if exponent >= 1.0 {
-            f64::INFINITY
-        } else if exponent < -1e18 {
-            // So far above the layer that the density there underflows.
-            start - ((-self.rate * integral).ln() - logarithm) / self.rate
-        } else {
-            start - (-exponent).ln_1p() / self.rate
-        }
     }
 }
 

@@ -60,12 +60,13 @@ fn gauss(g: &impl Fn(f64) -> f64, (a, b): (f64, f64)) -> f64 {
 mod tests {
     use super::super::Profile;
     use super::*;
+    use tyndall_scene::Exponential;
 
     fn profiles() -> [(Profile, f64); 5] {
         [
             (Profile::Constant(0.7), 3.0),
             (Profile::Constant(400.0), 3.0),
-            (Profile::Exponential { logarithm: 1.0, rate: 2.0 }, 5.0),
+            (Profile::Exponential(Exponential { logarithm: 1.0, rate: 2.0 }), 5.0),
             (Profile::PiecewiseLinear(vec![(0.0, 0.0), (1.0, 3.0), (1.0, 0.5), (4.0, 0.0)]), 4.0),
             (Profile::Gaussian { peak: 50.0, centre: 1.3, width: 0.01 }, 2.0),
         ]

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use tyndall_scene::{Density, Ray, Volume};
+use tyndall_scene::{Density, Exponential, Ray, Volume};
 use tyndall_volumes::{BrickGrid, Filter};
 
 use super::bounding::Cell;
@@ -61,9 +61,9 @@ impl<'a> Stretch<'a> {
                 Self::opaque_at_the_end(Profile::Constant(mu_t), range)
             }
             Density::Atmosphere { bottom, scale_height, .. } => {
-                let logarithm = mu_t.ln() - (local.origin.y - bottom) / scale_height;
-                let rate = local.direction.y / scale_height;
-                Self::opaque_at_the_end(Profile::Exponential { logarithm, rate }, range)
+                let mut extinction = Exponential::of_atmosphere(&local, *bottom, *scale_height);
+                extinction.logarithm += mu_t.ln();
+                Self::opaque_at_the_end(Profile::Exponential(extinction), range)
             }
         }
     }
@@ -72,7 +72,7 @@ impl<'a> Stretch<'a> {
     fn opaque_at_the_end(profile: Profile, (start, end): (f64, f64)) -> Option<Self> {
         let mut end = profile.distance_at(start, OPAQUE).map_or(end, |t| end.min(t));
         let mut pieces = 1;
-        if let Profile::Exponential { logarithm, rate } = profile {
+        if let Profile::Exponential(Exponential { logarithm, rate }) = profile {
             if rate > 0.0 {
                 end = end.min((logarithm - (rate * NEGLIGIBLE).ln()) / rate);
             }

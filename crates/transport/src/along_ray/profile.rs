@@ -3,18 +3,15 @@
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
+use tyndall_scene::Exponential;
+
 /// The extinction as a function of the distance t along the ray, 1/length; nowhere negative.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
     /// The same everywhere.
     Constant(f64),
-    /// exp(logarithm − rate·t): an atmosphere whose density falls exponentially with height, along any straight line.
-    Exponential {
-        /// Natural logarithm of the extinction at t = 0, which itself may be too large for a number.
-        logarithm: f64,
-        /// 1/length over which it falls by e; negative where it grows.
-        rate: f64,
-    },
+    /// That of an atmosphere along a straight line.
+    Exponential(Exponential),
     /// Straight lines between (t, μt), in order of t; two knots at one t make a step.
     PiecewiseLinear(Vec<(f64, f64)>),
     /// peak·exp(−(t − centre)²/(2 width²)).
@@ -40,7 +37,7 @@ impl Profile {
     pub fn mu_t(&self, t: f64) -> f64 {
         match *self {
             Self::Constant(mu_t) => mu_t,
-            Self::Exponential { logarithm, rate } => (logarithm - rate * t).exp(),
+            Self::Exponential(exponential) => exponential.value(t),
             Self::PiecewiseLinear(ref knots) => {
                 let after = knots.partition_point(|knot| knot.0 <= t);
                 match (after.checked_sub(1).map(|before| knots[before]), knots.get(after)) {
@@ -58,8 +55,7 @@ impl Profile {
     pub fn thickness(&self, a: f64, b: f64) -> f64 {
         match *self {
             Self::Constant(mu_t) => mu_t * (b - a),
-            Self::Exponential { rate: 0.0, .. } => self.mu_t(a) * (b - a),
-            Self::Exponential { rate, .. } => self.mu_t(a) * -(-rate * (b - a)).exp_m1() / rate,
+            Self::Exponential(exponential) => exponential.integral(a, b),
             Self::PiecewiseLinear(ref knots) => {
                 let inside = knots.iter().map(|knot| knot.0).filter(|t| (a..b).contains(t));
                 let cuts: Vec<f64> = std::iter::once(a).chain(inside).chain([b]).collect();
@@ -82,13 +78,10 @@ impl Profile {
     /// so far.
     pub fn distance_at(&self, a: f64, tau: f64) -> Option<f64> {
         match *self {
-            Self::Constant(_) | Self::Exponential { rate: 0.0, .. } => {
-                let mu_t = self.mu_t(a);
-                (mu_t > 0.0).then(|| a + tau / mu_t)
-            }
-            Self::Exponential { rate, .. } => {
-                let left = -rate * tau / self.mu_t(a);
-                (left > -1.0).then(|| a - left.ln_1p() / rate)
+            Self::Constant(mu_t) => (mu_t > 0.0).then(|| a + tau / mu_t),
+            Self::Exponential(exponential) => {
+                let distance = exponential.distance_of_integral(a, tau);
+                distance.is_finite().then_some(distance)
             }
             _ => None,
         }
@@ -99,7 +92,7 @@ impl Profile {
         let ends = [self.mu_t(a), self.mu_t(b)];
         let (mut min, mut max) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         match *self {
-            Self::Constant(_) | Self::Exponential { .. } => {}
+            Self::Constant(_) | Self::Exponential(_) => {}
             Self::PiecewiseLinear(ref knots) => {
                 for knot in knots.iter().filter(|knot| (a..=b).contains(&knot.0)) {
                     (min, max) = (min.min(knot.1), max.max(knot.1));

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use tyndall_lanes::Random;
-use tyndall_scene::{Ray, Scene};
+use tyndall_scene::{Exponential, Ray, Scene};
 use tyndall_transport::Lookups;
 use tyndall_transport::along_ray::{AlongRay, Bounding, Extent, Profile};
 
@@ -40,7 +40,7 @@ pub fn profiles() -> Vec<(Profile, f64)> {
         (lines(&[(0.0, 0.0), (1.0, 2.0)]), 1.0),
         (lines(&[(0.0, 0.5), (3.0, 1.5)]), 3.0),
         (lines(&[(0.0, 4.0), (2.0, 0.0)]), 2.0),
-        (Profile::Exponential { logarithm: f64::ln(3.0) - 0.4, rate: -0.16 }, 2.0),
+        (Profile::Exponential(Exponential { logarithm: f64::ln(3.0) - 0.4, rate: -0.16 }), 2.0),
         (gaussian(3.0, 1.0, 0.3), 2.0),
         (gaussian(10.0, 0.2, 0.1), 1.0),
         (gaussian(1.0, 2.0, 1.5), 4.0),
