@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 pub mod albedo_inversion;
+pub mod bsdf;
 pub mod cie;
 pub mod mie;
 pub mod phase_function;

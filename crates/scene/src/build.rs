@@ -19,6 +19,7 @@ use crate::description::{
 use crate::light::build_lights;
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
+use crate::surface::Surfaces;
 use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
@@ -79,6 +80,8 @@ pub fn build_with(
         lights: lights.lights,
         light_spectra: lights.spectra,
         light_probabilities,
+        surfaces: Surfaces::default(),
+        camera_inside: None,
         max_depth: description.render.max_depth,
         observer: observers(description)[0],
     };
@@ -126,6 +129,7 @@ fn build_volume(
             let bricks = build_bricks(description, &grid, Path::new(&name), notes)?;
             grid_density(bricks, &grid)
         }
+        VolumeSource::Shapes => (Density::Everywhere, DAffine3::IDENTITY),
     };
     let local_to_world = to_scene * local_to_volume;
     let world_to_local = local_to_world.inverse();

@@ -106,6 +106,7 @@ fn concentric_disc(u: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::Projection;
 
     fn camera(aperture_radius: f64) -> Camera {
         let description = CameraDescription {
@@ -113,6 +114,10 @@ mod tests {
             target: Some([0.0, 0.0, 0.0]),
             direction: None,
             up: [0.0, 1.0, 0.0],
+            projection: Projection::Perspective,
+            height: None,
+            window: None,
+            inside: None,
             vertical_fov: 90.0,
             aperture_radius,
             focus_distance: None,

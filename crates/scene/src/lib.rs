@@ -23,6 +23,7 @@ pub mod procedural;
 mod ready;
 pub mod sky;
 mod spectra;
+pub mod surface;
 mod toml;
 
 pub use self::build::{BuiltScene, build, build_with, choose_density};
@@ -39,4 +40,5 @@ pub use self::mie::{MieSpheres, mie_spheres};
 pub use self::phase::{GREY_WAVELENGTH_NM, build_phase, grey_phase};
 pub use self::ready::Scene;
 pub use self::spectra::{MediumPhase, MediumSpectra, SpectralCoefficients};
+pub use self::surface::{Hit, Surfaces};
 pub use self::toml::{SceneDocument, json_schema};

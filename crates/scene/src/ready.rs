@@ -4,6 +4,7 @@ use glam::DVec3;
 use tyndall_optics::Spectrum;
 
 use crate::light::Light;
+use crate::surface::Surfaces;
 use crate::{Camera, Observer, Volume};
 
 /// Everything that transport needs, in world space.
@@ -23,6 +24,10 @@ pub struct Scene {
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
     /// well by themselves, and sums to 1 unless it is 0 for all.
     pub light_probabilities: Vec<f64>,
+    /// Surfaces.
+    pub surfaces: Surfaces,
+    /// Numbers of the volumes bounded by shapes in which the camera is; to be found out if absent.
+    pub camera_inside: Option<Vec<usize>>,
     /// Greatest number of scattering events on a path; unlimited if absent.
     pub max_depth: Option<u32>,
     /// What the channels of the picture are.
@@ -40,13 +45,10 @@ impl Scene {
         self.is_chromatic() || self.observer != Observer::Rgb
     }
 
-    /// The light for next-event estimation at `u` in [0, 1), and the probability with which it was drawn.
-    pub fn choose_light(&self, u: f64) -> Option<(&Light, f64)> {
-        self.choose_light_number(u).map(|(number, probability)| (&self.lights[number], probability))
-    }
-
-    /// The same by the light's number.
-    pub fn choose_light_number(&self, u: f64) -> Option<(usize, f64)> {
+    /// Number of the light for next-event estimation at `from` for `u` in [0, 1), and the probability with which it was
+    /// drawn.
+    pub fn choose_light(&self, from: DVec3, u: f64) -> Option<(usize, f64)> {
+        let _ = from;
         let mut rest = u;
         let mut last = None;
         for (number, &probability) in self.light_probabilities.iter().enumerate() {
@@ -60,6 +62,12 @@ impl Scene {
             rest -= probability;
         }
         last
+    }
+
+    /// Probability with which [`choose_light`](Self::choose_light) draws the light of this number at `from`.
+    pub fn light_probability(&self, number: usize, from: DVec3) -> f64 {
+        let _ = from;
+        self.light_probabilities[number]
     }
 }
 
@@ -134,11 +142,13 @@ mod tests {
             light_spectra: vec![None; lights.len()],
             lights,
             light_probabilities,
+            surfaces: Surfaces::default(),
+            camera_inside: None,
             max_depth: None,
             observer: Observer::Rgb,
         };
-        assert_eq!(scene.choose_light(0.2).map(|(_, p)| p), Some(0.25));
-        assert_eq!(scene.choose_light(0.26).map(|(_, p)| p), Some(0.75));
-        assert_eq!(scene.choose_light(1.0 - 1e-16).map(|(_, p)| p), Some(0.75));
+        assert_eq!(scene.choose_light(DVec3::ZERO, 0.2).map(|(_, p)| p), Some(0.25));
+        assert_eq!(scene.choose_light(DVec3::ZERO, 0.26).map(|(_, p)| p), Some(0.75));
+        assert_eq!(scene.choose_light(DVec3::ZERO, 1.0 - 1e-16).map(|(_, p)| p), Some(0.75));
     }
 }

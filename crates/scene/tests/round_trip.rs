@@ -77,6 +77,10 @@ fn words() -> impl Strategy<Value = String> {
 fn camera() -> impl Strategy<Value = CameraDescription> {
     (vector(), direction(), of(positive()), within(0.5, 179.0), any::<bool>()).prop_map(
         |(position, direction, focus_distance, vertical_fov, is_lens)| CameraDescription {
+            projection: Default::default(),
+            height: None,
+            window: None,
+            inside: None,
             position,
             target: None,
             direction: Some(direction),
@@ -241,7 +245,14 @@ fn light() -> impl Strategy<Value = LightDescription> {
             .prop_map(|radiance| LightDescription::Constant(ConstantLightDescription { radiance })),
         (words(), number(), positive()).prop_map(|(file, rotation, scale)| {
             let filter = ImageFilter::Nearest;
-            LightDescription::Image(ImageLightDescription { file, rotation, scale, filter })
+            LightDescription::Image(ImageLightDescription {
+                file,
+                mapping: Default::default(),
+                orientation: None,
+                rotation,
+                scale,
+                filter,
+            })
         }),
         sky.prop_map(LightDescription::Sky),
         (direction(), light_colours(), within(1e-3, 90.0)).prop_map(
@@ -299,6 +310,8 @@ fn scene() -> impl Strategy<Value = SceneDescription> {
         proptest::collection::vec(meter(), 0..3),
     )
         .prop_map(|(unit, camera, (film, render), medium, volumes, lights, meters)| SceneDescription {
+            materials: Vec::new(),
+            shapes: Vec::new(),
             unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
             camera,
             film,

@@ -51,9 +51,10 @@ impl<'a> LitSegment<'a> {
 
     /// The share w_e of the light of a point light that is scattered once, along this ray, towards its origin.
     pub fn in_scattered(&self, scene: &Scene, estimators: Estimators, random: &mut Random) -> DVec3 {
-        let Some((Light::Point(light), probability)) = scene.choose_light(random.f64()) else {
+        let Some((number, probability)) = scene.choose_light(self.ray.origin, random.f64()) else {
             return DVec3::ZERO;
         };
+        let Light::Point(light) = &scene.lights[number] else { return DVec3::ZERO };
         let Some(distribution) = self.distribution(light) else { return DVec3::ZERO };
         let t = distribution.sample(random.f64());
         let collision = self.collision_density(t);

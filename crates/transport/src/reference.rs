@@ -120,9 +120,10 @@ struct Shadow<'a> {
 impl Shadow<'_> {
     /// Next-event estimation of ∫ f_p L dω over the light that arrives unscattered at `position`.
     fn next_event(&self, position: DVec3, before: DVec3, volume: &Volume, random: &mut Random) -> DVec3 {
-        let Some((light, probability)) = self.scene.choose_light(random.f64()) else {
+        let Some((number, probability)) = self.scene.choose_light(position, random.f64()) else {
             return DVec3::ZERO;
         };
+        let light = &self.scene.lights[number];
         let sample = light.sample(position, [random.f64(), random.f64()]);
         let phase = volume.medium.phase_function.value(before, sample.toward);
         let light_pdf = probability * sample.pdf;

@@ -12,7 +12,7 @@ use tyndall_volumes::GridClass;
 use super::lights::direction_of_compass;
 use super::{
     CameraDescription, EmissionGridDescription, FilmDescription, GridMeaning, LightDescription,
-    MediumDescription, PhaseDescription, SceneDescription, SkyDescription, SpectrumDescription,
+    MediumDescription, PhaseDescription, Projection, SceneDescription, SkyDescription, SpectrumDescription,
     SpectrumTable, TemperatureDescription, VolumeDescription,
 };
 
@@ -126,6 +126,8 @@ impl SceneDescription {
             film,
             render: Default::default(),
             medium: None,
+            materials: Vec::new(),
+            shapes: Vec::new(),
             volumes: vec![VolumeDescription {
                 file: Some(file.to_owned()),
                 grid: Some(summary.grid_name.clone()),
@@ -163,6 +165,7 @@ fn glowing(summary: &VolumeSummary) -> VolumeDescription {
                 grid: Some(grid_name.clone()),
                 scale: 1.0,
                 offset: 0.0,
+                normalised: false,
             });
         }
         Some(Glow::Flame { grid_name, max }) => {
@@ -242,6 +245,10 @@ fn framing_camera([min, max]: [DVec3; 2], aspect: f64) -> CameraDescription {
         target: Some(rounded(centre)),
         direction: None,
         up: [0.0, 1.0, 0.0],
+        projection: Projection::Perspective,
+        height: None,
+        window: None,
+        inside: None,
         vertical_fov: VERTICAL_FOV,
         aperture_radius: 0.0,
         focus_distance: None,

@@ -33,6 +33,10 @@ pub struct TemperatureDescription {
     /// Kelvin where the grid's value is 0.
     #[serde(default, skip_serializing_if = "super::is_default")]
     pub offset: f64,
+    /// Whether every black body's spectrum is scaled to 1 where it is greatest, so that colour is by temperature and
+    /// brightness by `emission_scale` and the density alone.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    pub normalised: bool,
 }
 
 /// A grid of colours that multiplies the albedo.

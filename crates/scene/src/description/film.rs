@@ -10,6 +10,10 @@ pub struct FilmDescription {
     /// Width and height, pixels.
     #[schemars(inner(range(min = 1, max = 65536)))]
     pub resolution: [u32; 2],
+    /// The part of the picture that is rendered and kept: left column, top row, width and height, pixels. All of it
+    /// unless given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crop: Option<[u32; 4]>,
     /// Exposure of pictures for the screen, stops; 0 shows radiance 1 as white.
     #[schemars(range(min = -100, max = 100))]
     pub exposure: f64,
@@ -38,7 +42,14 @@ pub enum FilmOutput {
 
 impl Default for FilmDescription {
     fn default() -> Self {
-        Self { resolution: [1280, 720], exposure: 0.0, layers: None, output: FilmOutput::Rgb, bands: None }
+        Self {
+            resolution: [1280, 720],
+            crop: None,
+            exposure: 0.0,
+            layers: None,
+            output: FilmOutput::Rgb,
+            bands: None,
+        }
     }
 }
 
@@ -50,9 +61,9 @@ pub enum Layer {
     StandardError,
     /// Number of samples of each pixel.
     SampleCount,
-    /// Mean distance to the first scattering event.
+    /// Mean distance to the first scattering event or surface.
     Depth,
-    /// Albedo at the first scattering event.
+    /// Albedo at the first scattering event or surface.
     Albedo,
     /// Fraction of the background that is seen.
     Transmittance,
@@ -62,6 +73,12 @@ pub enum Layer {
     Single,
     /// Light scattered more than once.
     Multiple,
+    /// Normal of the first surface, 0 where a medium or nothing comes first.
+    Normal,
+    /// Number of the object seen; of several in a pixel the greatest.
+    ObjectId,
+    /// Opacity of the shadows that fall on shadow catchers.
+    ShadowCatcher,
 }
 
 /// How the picture is rendered.

@@ -26,6 +26,8 @@ pub enum LightDescription {
     Distant(DistantLightDescription),
     /// A point that shines equally in all directions.
     Point(PointLightDescription),
+    /// A point that shines into a cone.
+    Spot(SpotLightDescription),
 }
 
 /// The same radiance from every direction.
@@ -43,6 +45,12 @@ pub struct ConstantLightDescription {
 pub struct ImageLightDescription {
     /// The picture (.exr, .hdr), relative to the scene file.
     pub file: String,
+    /// How directions come onto the picture.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    pub mapping: ImageMapping,
+    /// Rotation of the surroundings into the scene, nine numbers row by row, done before `rotation`; may mirror.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orientation: Option<[f64; 9]>,
     /// Turns the surroundings about +y, degrees, right-handed.
     #[serde(default, skip_serializing_if = "super::is_default")]
     pub rotation: f64,
@@ -53,6 +61,17 @@ pub struct ImageLightDescription {
     /// How radiance between texel centres is found.
     #[serde(default)]
     pub filter: ImageFilter,
+}
+
+/// How directions come onto a picture of the surroundings.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ImageMapping {
+    /// Longitude and latitude.
+    #[default]
+    Equirectangular,
+    /// Clarberg 2008's map of the square to the sphere, areas kept, with +z at its centre.
+    EqualArea,
 }
 
 /// How radiance between texel centres is found.
@@ -149,6 +168,39 @@ pub struct PointLightDescription {
     pub position: [f64; 3],
     /// Power per solid angle, W/sr for radiance in W/(m² sr) and lengths in m.
     pub intensity: SpectrumDescription,
+}
+
+/// A point that shines into a cone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline)]
+pub struct SpotLightDescription {
+    /// Where it is.
+    pub position: [f64; 3],
+    /// The axis of the cone, the way the light travels.
+    pub direction: [f64; 3],
+    /// Power per solid angle along the axis.
+    pub intensity: SpectrumDescription,
+    /// Angle between the axis and the edge of the cone, degrees.
+    #[schemars(range(max = 180), extend("exclusiveMinimum" = 0))]
+    pub angle: f64,
+    /// Angle from the axis up to which the light is undiminished, degrees.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    #[schemars(range(min = 0, max = 180))]
+    pub inner_angle: f64,
+    /// How it diminishes from there to the edge.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    pub falloff: SpotFalloff,
+}
+
+/// How a spot light diminishes towards the edge of its cone.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SpotFalloff {
+    /// x² (3 - 2x), x being 1 at the inner angle and 0 at the edge, linear in the cosine.
+    #[default]
+    Smooth,
+    /// Linear in the angle.
+    Linear,
 }
 
 /// Mean angle across the sun as seen from the Earth, degrees.

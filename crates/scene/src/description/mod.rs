@@ -10,6 +10,7 @@ mod camera;
 mod emission;
 mod film;
 mod lights;
+mod material;
 mod medium;
 mod meter;
 mod meter_rules;
@@ -20,6 +21,7 @@ pub mod phase_spec;
 mod quantity;
 mod rgb;
 mod rules;
+mod shape;
 mod spectrum;
 mod spheres;
 mod transform;
@@ -27,12 +29,17 @@ mod units;
 mod volume;
 
 pub use automatic::{AutomaticScene, Glow, VolumeSummary};
-pub use camera::CameraDescription;
+pub use camera::{CameraDescription, Projection};
 pub use emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
 pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription};
 pub use lights::{
-    ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, LightDescription,
-    PointLightDescription, SkyDescription, SunLightDescription,
+    ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, ImageMapping,
+    LightDescription, PointLightDescription, SkyDescription, SpotFalloff, SpotLightDescription,
+    SunLightDescription,
+};
+pub use material::{
+    CheckerTexture, ImageTexture, IndexChoice, MaterialChoice, MaterialDescription, NamedMaterial, Roughness,
+    TextureDescription, TextureWrap,
 };
 pub use medium::MediumDescription;
 pub use meter::{
@@ -44,6 +51,10 @@ pub use phase::{PhaseDescription, SggxShape};
 pub use quantity::Quantity;
 pub use rgb::Rgb;
 pub use rules::Violation;
+pub use shape::{
+    CylinderShape, DiscShape, MeshShape, Names, PlaneShape, RectangleShape, ShapeDescription, ShapeGeometry,
+    SurfaceEmission,
+};
 pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
 pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};
@@ -79,6 +90,12 @@ pub struct SceneDescription {
     /// coefficients add.
     #[serde(default, rename = "volume", skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeDescription>,
+    /// Materials that shapes have by name.
+    #[serde(default, rename = "material", skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<NamedMaterial>,
+    /// Surfaces: meshes, spheres, floors, lamps; and the boundaries of volumes.
+    #[serde(default, rename = "shape", skip_serializing_if = "Vec::is_empty")]
+    pub shapes: Vec<ShapeDescription>,
     /// Lights.
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightDescription>,

@@ -269,6 +269,10 @@ fn light(found: &mut Findings, light: &LightDescription) {
         LightDescription::Sky(description) => sky(found, description),
         LightDescription::Constant(constant) => light_spectrum(found, "radiance", &constant.radiance),
         LightDescription::Point(point) => light_spectrum(found, "intensity", &point.intensity),
+        LightDescription::Spot(spot) => {
+            found.report_zero("direction", spot.direction);
+            light_spectrum(found, "intensity", &spot.intensity);
+        }
         LightDescription::Image(_) => {}
     }
 }

@@ -8,10 +8,10 @@ use super::medium::MediumDescription;
 use super::transform::TransformDescription;
 
 /// A volume: exactly one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`, and the optical properties
-/// of what fills it.
+/// of what fills it; or none of them, if some shape has it for `interior`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VolumeDescription {
-    /// A name for messages.
+    /// A name for messages, and for shapes that bound it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// Volume file (.vdb, .nvdb, .vol, .npy, .raw, .nii, .nii.gz), relative to the scene file.
@@ -88,10 +88,12 @@ pub enum VolumeSource<'a> {
     Atmosphere(&'a AtmosphereShape),
     /// Computed.
     Procedural(&'a ProceduralDescription),
+    /// Density 1 wherever the shapes are that have it for interior.
+    Shapes,
 }
 
 impl VolumeDescription {
-    /// The one source of the density; or the key that is one too many (empty if there is none) and the mend.
+    /// The one source of the density; or the key that is one too many and the mend.
     pub fn source(&self) -> Result<VolumeSource<'_>, (&'static str, String)> {
         let given: Vec<(&'static str, VolumeSource<'_>)> = [
             ("file", self.file.as_deref().map(VolumeSource::File)),
@@ -106,11 +108,7 @@ impl VolumeDescription {
         .collect();
         match given.as_slice() {
             [(_, source)] => Ok(*source),
-            [] => Err((
-                "",
-                "the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`"
-                    .to_owned(),
-            )),
+            [] => Ok(VolumeSource::Shapes),
             [(first, _), (second, _), ..] => Err((
                 *second,
                 format!(

@@ -66,6 +66,12 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
                 built.lights.push(Light::Distant(DistantLight::new(direction, irradiance.light_rgb())));
                 own_spectrum = Some(irradiance);
             }
+            LightDescription::Spot(_) => {
+                return Err(SceneError::file(
+                    Path::new(&format!("light.{number}")),
+                    "spot lights are not known yet",
+                ));
+            }
             LightDescription::Point(point) => {
                 let position = DVec3::from_array(point.position);
                 let intensity = colour(&point.intensity)?;

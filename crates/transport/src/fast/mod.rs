@@ -367,10 +367,11 @@ impl<'a> Engine<'a> {
 /// on the contribution before the shadow ray is paid for, ended it.
 #[inline(always)]
 fn choose_direct(scene: &FastScene, path: &mut Path, phase: volume::Phase<'_>, random: &mut Random) -> bool {
-    let Some((light, probability)) = scene.scene.choose_light(random.f64()) else {
+    let from = scene.to_world(path.position);
+    let Some((number, probability)) = scene.scene.choose_light(from, random.f64()) else {
         return false;
     };
-    let sample = light.sample(scene.to_world(path.position), [random.f64(), random.f64()]);
+    let sample = scene.scene.lights[number].sample(from, [random.f64(), random.f64()]);
     let toward = sample.toward.as_vec3();
     let phase_value = phase.value(path.direction, toward);
     let light_pdf = (probability * sample.pdf) as f32;

@@ -241,7 +241,7 @@ impl<'a> SpectralScene<'a> {
         densities: &PathDensities,
         random: &mut Random,
     ) -> DVec4 {
-        let Some((number, probability)) = self.scene.choose_light_number(random.f64()) else {
+        let Some((number, probability)) = self.scene.choose_light(position, random.f64()) else {
             return DVec4::ZERO;
         };
         let light = &self.scene.lights[number];

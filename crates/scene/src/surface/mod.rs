@@ -1,0 +1,98 @@
+//! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
+
+mod material;
+
+use glam::DVec3;
+
+pub use self::material::Material;
+use crate::Ray;
+
+/// All surfaces of a scene.
+#[derive(Debug, Clone, Default)]
+pub struct Surfaces {
+    /// What the surfaces belong to.
+    pub shapes: Vec<Shape>,
+    /// What they are made of.
+    pub materials: Vec<Material>,
+}
+
+/// One `[[shape]]`, or one of its instances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shape {
+    /// How messages call it.
+    pub name: String,
+    /// Number of its material.
+    pub material: usize,
+    /// Numbers of the volumes that are inside it.
+    pub interior: Vec<usize>,
+    /// Numbers of the volumes that end at it.
+    pub exterior: Vec<usize>,
+    /// Number of its light, if it shines.
+    pub light: Option<usize>,
+    /// Number in the layer of objects.
+    pub id: u32,
+    /// Whether its shadows are for a compositor.
+    pub is_shadow_catcher: bool,
+}
+
+/// Where a ray meets a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray.
+    pub t: f64,
+    /// Place on the surface.
+    pub position: DVec3,
+    /// Unit normal of the surface itself, to its outer side.
+    pub normal: DVec3,
+    /// Unit normal that it is lit by, on the same side of the surface.
+    pub shading_normal: DVec3,
+    /// Direction in which the first texture coordinate grows; any along the surface where there is none.
+    pub tangent: DVec3,
+    /// Texture coordinates.
+    pub uv: [f64; 2],
+    /// Number of the shape.
+    pub shape: usize,
+    /// Number of the primitive within the shape.
+    pub primitive: usize,
+}
+
+impl Surfaces {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty()
+    }
+
+    /// The nearest surface along `ray`, of unit direction, before the distance `end`.
+    pub fn intersect(&self, ray: &Ray, end: f64) -> Option<Hit> {
+        let _ = (ray, end);
+        None
+    }
+
+    /// The shape that a hit is on.
+    pub fn shape(&self, hit: &Hit) -> &Shape {
+        &self.shapes[hit.shape]
+    }
+
+    /// The material of a hit.
+    pub fn material(&self, hit: &Hit) -> &Material {
+        &self.materials[self.shape(hit).material]
+    }
+}
+
+impl Hit {
+    /// Where a ray in `direction` leaves the surface from, on the side it goes to and far enough not to meet the same
+    /// place again.
+    pub fn leave(&self, direction: DVec3) -> DVec3 {
+        let size = self.position.abs().max_element().max(1.0);
+        let side = if direction.dot(self.normal) < 0.0 { -1.0 } else { 1.0 };
+        self.position + self.normal * (side * size * 1e-10)
+    }
+
+    /// The local frame of [`tyndall_optics::bsdf`]: tangent, bitangent and shading normal.
+    pub fn frame(&self) -> [DVec3; 3] {
+        let normal = self.shading_normal;
+        let tangent = self.tangent - normal * normal.dot(self.tangent);
+        let tangent = tangent.normalize_or(normal.any_orthonormal_vector());
+        [tangent, normal.cross(tangent), normal]
+    }
+}
