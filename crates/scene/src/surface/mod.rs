@@ -2,11 +2,13 @@
 
 mod material;
 mod mesh;
+mod world_primitive;
 
 use glam::DVec3;
 
 pub use self::material::Material;
 pub use self::mesh::{Mesh, read_mesh, write_ply};
+pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
 
 /// All surfaces of a scene.
