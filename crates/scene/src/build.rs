@@ -19,7 +19,7 @@ use crate::description::{
 use crate::light::build_lights;
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
-use crate::surface::Surfaces;
+use crate::surface::{Surfaces, VolumeNumber, build_surfaces};
 use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
@@ -64,14 +64,25 @@ pub fn build_with(
         volumes.push(build_volume(volume, name, &description.unit, folder, &tables, &mut grids, &mut notes)?);
     }
     // Nothing collides where there is no extinction.
-    volumes.retain(|volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO);
+    let is_there =
+        |volume: &Volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO;
+    let mut count = 0..;
+    let numbers: Vec<VolumeNumber> = volumes
+        .iter()
+        .map(|volume| VolumeNumber {
+            name: volume.name.clone(),
+            number: if is_there(volume) { count.next() } else { None },
+        })
+        .collect();
+    volumes.retain(is_there);
+    let surfaces = build_surfaces(description, folder, &numbers, &mut notes)?;
 
     let lights = build_lights(&description.lights, folder)?;
     notes.extend(lights.warnings);
     if lights.lights.is_empty() && !volumes.iter().any(Volume::glows) {
         notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
     }
-    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes));
+    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes, &surfaces));
     let resolution = description.film.resolution;
     let scene = Scene {
         camera: Camera::new(&description.camera, resolution),
@@ -80,7 +91,7 @@ pub fn build_with(
         lights: lights.lights,
         light_spectra: lights.spectra,
         light_probabilities,
-        surfaces: Surfaces::default(),
+        surfaces,
         camera_inside: None,
         max_depth: description.render.max_depth,
         observer: observers(description)[0],
@@ -290,9 +301,9 @@ fn element(raw_type: RawType) -> Element {
     }
 }
 
-/// Radius of a sphere around the bounded volumes.
-fn scene_radius(volumes: &[Volume]) -> f64 {
-    let boxes = volumes.iter().filter_map(Volume::world_box);
+/// Radius of a sphere around the bounded volumes and surfaces.
+fn scene_radius(volumes: &[Volume], surfaces: &Surfaces) -> f64 {
+    let boxes = volumes.iter().filter_map(Volume::world_box).chain(surfaces.bounds());
     let all = boxes.reduce(|[low, high], [min, max]| [low.min(min), high.max(max)]);
     all.map_or(1.0, |[min, max]| 0.5 * (max - min).length())
 }
