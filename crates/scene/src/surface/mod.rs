@@ -1,10 +1,12 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
 mod material;
+mod world_primitive;
 
 use glam::DVec3;
 
 pub use self::material::Material;
+pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
 
 /// All surfaces of a scene.
