@@ -9,7 +9,7 @@ mod constant;
 mod distant;
 mod equirectangular;
 mod image;
-mod image_file;
+pub(crate) mod image_file;
 mod point;
 mod sun;
 mod texel_distribution;

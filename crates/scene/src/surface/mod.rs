@@ -1,10 +1,17 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
+mod build_material;
 mod material;
+mod picture;
+mod texture;
 
 use glam::DVec3;
 
-pub use self::material::Material;
+pub use self::build_material::MaterialBuilder;
+pub(crate) use self::build_material::{MOST_PARTS, conductor_index};
+pub use self::material::{ConductorIndex, Material};
+pub use self::picture::Picture;
+pub use self::texture::{Colour, ImageLookup, Placement, Texture};
 use crate::Ray;
 
 /// All surfaces of a scene.
