@@ -1,6 +1,7 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
 mod build;
+mod build_material;
 mod bvh;
 mod closed;
 mod cuboid;
@@ -9,10 +10,12 @@ mod disc;
 mod local;
 mod material;
 mod mesh;
+mod picture;
 mod pieces;
 mod placed;
 mod sphere;
 mod square;
+mod texture;
 mod triangle;
 mod triangle_mesh;
 mod world_primitive;
@@ -20,11 +23,14 @@ mod world_primitive;
 use glam::DVec3;
 
 pub(crate) use self::build::{VolumeNumber, build_surfaces};
+pub use self::build_material::MaterialBuilder;
+pub(crate) use self::build_material::{MOST_PARTS, conductor_index};
 use self::bvh::Bvh;
-use self::placed::Placed;
-
-pub use self::material::Material;
+pub use self::material::{ConductorIndex, Material};
 pub use self::mesh::{Mesh, read_mesh, write_ply};
+pub use self::picture::Picture;
+use self::placed::Placed;
+pub use self::texture::{Colour, ImageLookup, Placement, Texture};
 pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
 
