@@ -19,7 +19,7 @@ use crate::description::{
 use crate::light::build_lights;
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
-use crate::surface::Surfaces;
+use crate::surface::{Boundaries, Surfaces};
 use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
@@ -72,16 +72,18 @@ pub fn build_with(
         notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
     }
     let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes));
-    let resolution = description.film.resolution;
+    let camera = Camera::new(&description.camera, description.film.resolution, description.film.crop);
+    let surfaces = Surfaces::default();
     let scene = Scene {
-        camera: Camera::new(&description.camera, resolution),
-        resolution,
-        volumes,
+        resolution: camera.resolution(),
+        camera,
         lights: lights.lights,
         light_spectra: lights.spectra,
         light_probabilities,
-        surfaces: Surfaces::default(),
-        camera_inside: None,
+        boundaries: Boundaries::new(&surfaces, volumes.len()),
+        surfaces,
+        volumes,
+        camera_presence: None,
         max_depth: description.render.max_depth,
         observer: observers(description)[0],
     };

@@ -1,11 +1,13 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
+mod boundaries;
 mod material;
 mod mesh;
 mod world_primitive;
 
 use glam::DVec3;
 
+pub use self::boundaries::{Boundaries, Presence};
 pub use self::material::Material;
 pub use self::mesh::{Mesh, read_mesh, write_ply};
 pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
