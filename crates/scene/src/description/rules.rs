@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::meter_rules::meters;
+use super::shape_rules::shapes;
 use super::{
     CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, PhaseDescription,
     Projection, SceneDescription, SkyDescription, SpectrumDescription, TransformDescription,
@@ -39,6 +40,7 @@ impl SceneDescription {
             found
                 .within("light", |found| found.within(&index.to_string(), |found| light(found, description)));
         }
+        shapes(&mut found, self);
         meters(&mut found, &self.meters);
         found.violations
     }
@@ -180,7 +182,7 @@ fn fills_all_space(found: &mut Findings, medium: &MediumDescription, unit: &str)
     }
 }
 
-fn light_spectrum(found: &mut Findings, key: &'static str, spectrum: &SpectrumDescription) {
+pub(super) fn light_spectrum(found: &mut Findings, key: &'static str, spectrum: &SpectrumDescription) {
     if let Err((inner, message)) = spectrum.light() {
         report_at(found, &[key, inner], format!("`{key}`: {message}"));
     }
@@ -199,7 +201,7 @@ fn volume(found: &mut Findings, volume: &VolumeDescription, unit: &str) {
     medium_rules(found, &volume.medium, unit);
     fields(found, volume);
     if let Some(transform) = &volume.transform {
-        found.within("transform", |found| transform_is_invertible(found, transform));
+        found.within("transform", |found| transform_is_invertible(found, transform, "volume"));
     }
     let source = match volume.source() {
         Ok(source) => source,
@@ -265,7 +267,7 @@ fn fields(found: &mut Findings, volume: &VolumeDescription) {
     }
 }
 
-fn transform_is_invertible(found: &mut Findings, transform: &TransformDescription) {
+pub(super) fn transform_is_invertible(found: &mut Findings, transform: &TransformDescription, what: &str) {
     if let Some(matrix) = transform.matrix {
         if transform.scale.is_some() || transform.rotate.is_some() || transform.translate.is_some() {
             found.report("matrix", "`matrix` replaces `scale`, `rotate` and `translate`: keep it or them");
@@ -279,7 +281,7 @@ fn transform_is_invertible(found: &mut Findings, transform: &TransformDescriptio
     let determinant = transform.to_affine().matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() {
         let key = if transform.matrix.is_some() { "matrix" } else { "scale" };
-        found.report(key, format!("`{key}` makes the volume flat: no factor may be 0"));
+        found.report(key, format!("`{key}` makes the {what} flat: no factor may be 0"));
     }
 }
 
