@@ -6,7 +6,9 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::description::{LightDescription, PhaseDescription, RenderDescription, SceneDescription};
+use crate::description::{
+    LightDescription, MaterialChoice, PhaseDescription, RenderDescription, SceneDescription,
+};
 use crate::error::SceneError;
 
 /// The first 128 bits of a SHA-256 over everything that determines the expected picture.
@@ -55,6 +57,11 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
         for file in of_fields.into_iter().flatten().chain([&mut volume.file]).flatten() {
             *file = content_hash(&folder.join(&file))?;
         }
+    }
+    let in_shapes = canonical.shapes.iter_mut().filter_map(|shape| shape.material.as_mut());
+    let of_materials = canonical.materials.iter_mut().flat_map(|named| named.material.pictures_mut());
+    for picture in of_materials.chain(in_shapes.flat_map(MaterialChoice::pictures_mut)) {
+        *picture = content_hash(&folder.join(&picture))?;
     }
     for light in &mut canonical.lights {
         if let LightDescription::Image(image) = light {
