@@ -16,7 +16,7 @@ use crate::description::{
     AtmosphereShape, GridFilter, GridMeaning, ProceduralDescription, RawType, Storage, VolumeDescription,
     VolumeSource,
 };
-use crate::light::build_lights;
+use crate::light::{LightTree, build_lights};
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
 use crate::surface::Surfaces;
@@ -66,12 +66,14 @@ pub fn build_with(
     // Nothing collides where there is no extinction.
     volumes.retain(|volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO);
 
-    let lights = build_lights(&description.lights, folder)?;
-    notes.extend(lights.warnings);
+    let mut lights = build_lights(&description.lights, folder)?;
+    notes.append(&mut lights.warnings);
     if lights.lights.is_empty() && !volumes.iter().any(Volume::glows) {
         notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
     }
+    lights.add_glowing_volumes(&volumes, |_| false);
     let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes));
+    let light_tree = LightTree::new(&lights.lights, &light_probabilities);
     let resolution = description.film.resolution;
     let scene = Scene {
         camera: Camera::new(&description.camera, resolution),
@@ -80,6 +82,7 @@ pub fn build_with(
         lights: lights.lights,
         light_spectra: lights.spectra,
         light_probabilities,
+        light_tree,
         surfaces: Surfaces::default(),
         camera_inside: None,
         max_depth: description.render.max_depth,

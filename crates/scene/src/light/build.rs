@@ -6,9 +6,10 @@ use glam::DVec3;
 use tyndall_optics::{Spectrum, cie};
 
 use super::{
-    AreaLight, ConstantLight, DistantLight, ImageLight, Light, PointLight, SpotLight, SunLight,
+    AreaLight, ConstantLight, DistantLight, ImageLight, Light, PointLight, SpotLight, SunLight, VolumeLight,
     read_light_image,
 };
+use crate::Volume;
 use crate::description::{ImageFilter, LightDescription, SpectrumDescription, SurfaceEmission};
 use crate::error::SceneError;
 use crate::sky::Sky;
@@ -113,6 +114,16 @@ impl BuiltLights {
         self.lights.push(Light::Area(lamp));
         self.spectra.push(of_luminance_one(spectrum));
         Ok(self.lights.len() - 1)
+    }
+
+    /// Adds those of the `volumes` of a scene that glow and are where their own density says; `is_bounded_by_shapes` tells
+    /// of the others by their numbers.
+    pub fn add_glowing_volumes(&mut self, volumes: &[Volume], is_bounded_by_shapes: impl Fn(usize) -> bool) {
+        let glowing = volumes.iter().enumerate().filter(|(number, _)| !is_bounded_by_shapes(*number));
+        self.lights.extend(
+            glowing.filter_map(|(number, volume)| VolumeLight::new(volume, number).map(Light::Volume)),
+        );
+        self.spectra.resize(self.lights.len(), None);
     }
 }
 
