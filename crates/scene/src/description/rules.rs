@@ -7,8 +7,8 @@ use super::meter_rules::meters;
 use super::shape_rules::shapes;
 use super::{
     CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, PhaseDescription,
-    SceneDescription, SkyDescription, SpectrumDescription, TransformDescription, VolumeDescription,
-    VolumeSource,
+    Projection, SceneDescription, SkyDescription, SpectrumDescription, TransformDescription,
+    VolumeDescription, VolumeSource,
 };
 
 /// A key whose value contradicts the rest of the scene.
@@ -78,6 +78,21 @@ impl Findings {
 
 fn camera(found: &mut Findings, camera: &CameraDescription) {
     found.report_zero("up", camera.up);
+    if let Some([left, right, bottom, top]) = camera.window
+        && (left == right || bottom == top)
+    {
+        found.report("window", "`window` is empty: left and right, bottom and top must differ");
+    }
+    let is_orthographic = camera.projection == Projection::Orthographic;
+    if !is_orthographic && camera.height.is_some() {
+        found.report("height", "`height` is for `projection = \"orthographic\"`: give `vertical_fov`");
+    }
+    if is_orthographic && camera.height.is_none() && camera.window.is_none() {
+        found.report("", "an orthographic camera needs `height`, the height of what it sees in scene units");
+    }
+    if is_orthographic && camera.aperture_radius > 0.0 {
+        found.report("aperture_radius", "parallel rays have no lens: remove `aperture_radius`");
+    }
     let view = match (camera.target, camera.direction) {
         (Some(_), Some(_)) => {
             return found.report("direction", "the camera has both `target` and `direction`: keep one");
@@ -107,6 +122,18 @@ fn camera(found: &mut Findings, camera: &CameraDescription) {
 }
 
 fn film(found: &mut Findings, scene: &SceneDescription) {
+    if let Some([left, top, width, height]) = scene.film.crop {
+        let reaches = |start: u32, length: u32, all: u32| {
+            length > 0 && u64::from(start) + u64::from(length) <= u64::from(all)
+        };
+        let [columns, rows] = scene.film.resolution;
+        if !reaches(left, width, columns) || !reaches(top, height, rows) {
+            let message = format!(
+                "`crop` is no part of the {columns}x{rows} pixels: it is left column, top row, width, height"
+            );
+            found.within("film", |found| found.report("crop", message));
+        }
+    }
     let mut needs_spectral = |key: &str, is_given: bool| {
         if is_given && scene.render.mode != ColourMode::Spectral {
             let message =

@@ -62,8 +62,8 @@ pub(crate) fn build_surfaces(
                 }
             },
         };
-        let interior = numbers(shape.interior.as_ref(), volumes).map_err(refuse)?;
-        let exterior = numbers(shape.exterior.as_ref(), volumes).map_err(refuse)?;
+        let interior = numbers_of(shape.interior.as_ref(), volumes).map_err(refuse)?;
+        let exterior = numbers_of(shape.exterior.as_ref(), volumes).map_err(refuse)?;
         let transform =
             shape.transform.as_ref().map_or(DAffine3::IDENTITY, |transform| transform.to_affine());
         let once = [DAffine3::IDENTITY];
@@ -96,7 +96,7 @@ pub(crate) fn build_surfaces(
 }
 
 /// The numbers of the volumes of these names.
-fn numbers(names: Option<&Names>, volumes: &[VolumeNumber]) -> Result<Vec<usize>, String> {
+pub(crate) fn numbers_of(names: Option<&Names>, volumes: &[VolumeNumber]) -> Result<Vec<usize>, String> {
     let names = names.map_or(&[][..], Names::all).iter();
     let found = names.map(|name| match volumes.iter().find(|volume| volume.name == *name) {
         Some(volume) => Ok(volume.number),

@@ -1,5 +1,6 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
+mod boundaries;
 mod build;
 mod build_material;
 mod bvh;
@@ -22,7 +23,8 @@ mod world_primitive;
 
 use glam::DVec3;
 
-pub(crate) use self::build::{VolumeNumber, build_surfaces};
+pub use self::boundaries::{Boundaries, Presence};
+pub(crate) use self::build::{VolumeNumber, build_surfaces, numbers_of};
 pub use self::build_material::MaterialBuilder;
 pub(crate) use self::build_material::{MOST_PARTS, conductor_index};
 use self::bvh::Bvh;

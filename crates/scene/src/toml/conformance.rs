@@ -38,7 +38,9 @@ impl Check {
             if branches.iter().any(|branch| tag_of(branch).is_some()) {
                 return self.tagged_table(node, name, branches);
             }
-            return match branches.iter().find(|branch| is_kind(&node.value, kind_of(branch))) {
+            let fitting = branches.iter().filter(|branch| is_kind(&node.value, kind_of(branch)));
+            // Of several kinds of tables the one that knows most of the keys; the first if all know as many.
+            return match fitting.rev().max_by_key(|branch| known_keys(&node.value, branch)) {
                 Some(branch) => self.value(node, name, branch),
                 None => self.wrong_kind(node, name, schema),
             };
@@ -180,7 +182,7 @@ fn name_of(key: &str, schema: &Schema) -> String {
     let is_table = kind_of(schema) == "object" && matches!(key, "film" | "render" | "medium");
     match key {
         "camera" => "[camera]".to_owned(),
-        "volume" | "light" | "meter" => format!("[[{key}]]"),
+        "volume" | "shape" | "light" | "meter" => format!("[[{key}]]"),
         _ if is_table => format!("[{key}]"),
         _ => format!("`{key}`"),
     }
@@ -213,7 +215,19 @@ fn tag_of(schema: &Schema) -> Option<&str> {
 }
 
 fn kind_of(schema: &Schema) -> &str {
-    schema.get("type").and_then(Schema::as_str).unwrap_or("")
+    let is_tagged =
+        || branches_of(schema).is_some_and(|branches| branches.iter().any(|b| tag_of(b).is_some()));
+    schema.get("type").and_then(Schema::as_str).unwrap_or_else(|| if is_tagged() { "object" } else { "" })
+}
+
+/// How many keys of a table are described.
+fn known_keys(value: &Value, schema: &Schema) -> usize {
+    match (value, schema.get("properties").and_then(Schema::as_object)) {
+        (Value::Table(entries), Some(properties)) => {
+            entries.iter().filter(|entry| properties.contains_key(&entry.key)).count()
+        }
+        _ => 0,
+    }
 }
 
 fn is_kind(value: &Value, kind: &str) -> bool {
