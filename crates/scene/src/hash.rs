@@ -6,6 +6,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
+use crate::canonical_names::without_names;
 use crate::description::{
     LightDescription, MaterialChoice, PhaseDescription, RenderDescription, SceneDescription,
 };
@@ -24,7 +25,7 @@ impl fmt::Display for SceneHash {
 /// Hash of a scene whose file names are relative to `folder`.
 ///
 /// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
-/// lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
+/// shapes, materials, lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
 /// are, names, the unit (unless media are given in physical units), comments, samples per pixel, seed, integrator,
 /// exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
@@ -36,6 +37,7 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
     canonical.meters.clear();
+    without_names(&mut canonical);
     let RenderDescription { max_depth, mode, .. } = description.render;
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     let media =
@@ -48,13 +50,17 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
         }
     }
     for volume in &mut canonical.volumes {
-        volume.name = None;
         let of_fields = [
             volume.emission_grid.as_mut().map(|grid| &mut grid.file),
             volume.temperature.as_mut().map(|grid| &mut grid.file),
             volume.albedo_grid.as_mut().map(|grid| &mut grid.file),
         ];
         for file in of_fields.into_iter().flatten().chain([&mut volume.file]).flatten() {
+            *file = content_hash(&folder.join(&file))?;
+        }
+    }
+    for mesh in canonical.shapes.iter_mut().filter_map(|shape| shape.mesh.as_mut()) {
+        if let Some(file) = &mut mesh.file {
             *file = content_hash(&folder.join(&file))?;
         }
     }

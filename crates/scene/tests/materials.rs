@@ -299,7 +299,10 @@ fn what_is_wrong_with_a_material_is_said_where_it_stands() {
             "type = \"mix\"\nmaterials = [\"it\", { type = \"null\" }]\namount = 0.5",
             "part of itself: it -> it",
         ),
-        ("type = \"mix\"\nmaterials = [\"is\", { type = \"null\" }]\namount = 0.5", "no material named `is`"),
+        (
+            "type = \"mix\"\nmaterials = [\"is\", { type = \"null\" }]\namount = 0.5",
+            "there is no material `is`, did you mean `it`?",
+        ),
         (
             "type = \"mix\"\nmaterials = [{ type = \"conductor\", eta = 2 }, { type = \"null\" }]\namount = 0.5",
             "belong together",

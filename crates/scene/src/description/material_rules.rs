@@ -5,7 +5,7 @@ use tyndall_optics::{Metal, dielectric_index, dielectric_names};
 use super::rules::Findings;
 use super::{
     IndexChoice, KeyProblem, MaterialChoice, MaterialDescription, NamedMaterial, SceneDescription,
-    SpectrumDescription, TextureDescription, unknown_name,
+    SpectrumDescription, TextureDescription,
 };
 use crate::suggestion::did_you_mean;
 use crate::surface::{MOST_PARTS, conductor_index};
@@ -15,9 +15,12 @@ pub(crate) fn material_of_name<'a>(
     name: &str,
     named: &'a [NamedMaterial],
 ) -> Result<&'a NamedMaterial, String> {
-    let names = named.iter().map(|material| material.name.as_str());
-    let known = named.iter().find(|material| material.name == name);
-    known.ok_or_else(|| unknown_name("material", name, names))
+    named.iter().find(|material| material.name == name).ok_or_else(|| {
+        let names = named.iter().map(|material| material.name.as_str());
+        let mend =
+            if named.is_empty() { "; add a [[material]]".to_owned() } else { did_you_mean(name, names) };
+        format!("there is no material `{name}`{mend}")
+    })
 }
 
 /// That there is no metal of that name.
@@ -39,7 +42,10 @@ pub(super) fn materials(found: &mut Findings, scene: &SceneDescription) {
     for (number, here) in named.iter().enumerate() {
         found.within("material", |found| {
             found.within(&number.to_string(), |found| {
-                if let Err(message) = count(number, named, &mut parts, &mut Vec::new()) {
+                if named[..number].iter().any(|other| other.name == here.name) {
+                    let message = format!("there are two materials `{}`: rename one", here.name);
+                    found.report("name", message);
+                } else if let Err(message) = count(number, named, &mut parts, &mut Vec::new()) {
                     found.report("", message);
                 }
                 material(found, &here.material, named);
@@ -47,11 +53,10 @@ pub(super) fn materials(found: &mut Findings, scene: &SceneDescription) {
         });
     }
     for (number, shape) in scene.shapes.iter().enumerate() {
-        // Names of materials are looked at with the other keys of the shape.
-        if let Some(MaterialChoice::Here(here)) = &shape.material {
+        if let Some(here) = &shape.material {
             found.within("shape", |found| {
                 found.within(&number.to_string(), |found| {
-                    found.within("material", |found| material(found, here, named));
+                    found.within("material", |found| choice(found, here, named));
                 });
             });
         }
