@@ -14,7 +14,7 @@ mod emission_bounds;
 mod equal_area;
 mod equirectangular;
 mod image;
-mod image_file;
+pub(crate) mod image_file;
 mod point;
 mod spherical_rectangle;
 mod spot;
