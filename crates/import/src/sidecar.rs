@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf, absolute};
 
 use tyndall_volumes::{Grid, WriteOptions};
@@ -45,6 +45,22 @@ impl Sidecar {
         let path = self.path(name, "vdb")?;
         tyndall_volumes::write(&path, std::slice::from_ref(grid), &WriteOptions::default())
             .map_err(|error| ImportError::of(&self.folder, error.to_string()))
+    }
+
+    /// Writes all that `source` holds into a file named after `name`; returns its absolute path.
+    ///
+    /// # Errors
+    /// If the source cannot be read or the file cannot be written.
+    pub fn write_copy(
+        &self,
+        name: &str,
+        extension: &str,
+        source: &mut impl Read,
+    ) -> Result<PathBuf, ImportError> {
+        let path = self.path(name, extension)?;
+        let written = File::create(&path).and_then(|mut out| io::copy(source, &mut out));
+        written.map_err(|error| unwritable(&path, &error.to_string()))?;
+        Ok(path)
     }
 
     /// An absolute path that no other file of this sidecar has.
