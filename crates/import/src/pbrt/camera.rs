@@ -141,7 +141,7 @@ pub(super) fn camera(
     parameters.pass(&["shutteropen", "shutterclose", "lensfile", "aperturediameter", "aperture", "mapping"]);
     context.tell_unused("Camera", &camera.entity);
     let mut description = CameraDescription {
-        position: to_world.translation.to_array(),
+        position: to_world.translation.to_array().map(plain),
         target: None,
         direction: Some(direction.to_array()),
         up: up.to_array(),
@@ -173,7 +173,8 @@ fn say_plainly(camera: &mut CameraDescription, [left, right, bottom, top]: [f64;
 /// A number without the last digits that rounding has left.
 fn plain(number: f64) -> f64 {
     let rounded = (number * 1e9).round() / 1e9;
-    if (rounded - number).abs() < 1e-11 * number.abs() { rounded } else { number }
+    // The sum makes 0 of -0.
+    if (rounded - number).abs() < 1e-11 * number.abs() { rounded } else { number + 0.0 }
 }
 
 /// Samples for each pixel, seed, greatest depth; and what is said of other ways to render.

@@ -32,7 +32,7 @@ pub(super) enum Directive {
     ConcatTransform([f64; 16]),
     CoordinateSystem(String),
     CoordSysTransform(String),
-    ActiveTransform(String),
+    ActiveTransform,
     TransformTimes,
     ReverseOrientation,
     AttributeBegin,
@@ -83,7 +83,10 @@ impl Directive {
             b"ConcatTransform" => Self::ConcatTransform(numbers(tokens)?),
             b"CoordinateSystem" => Self::CoordinateSystem(text(tokens)?),
             b"CoordSysTransform" => Self::CoordSysTransform(text(tokens)?),
-            b"ActiveTransform" => Self::ActiveTransform(word_or_text(tokens)?),
+            b"ActiveTransform" => {
+                word_or_text(tokens)?;
+                Self::ActiveTransform
+            }
             b"TransformTimes" => {
                 numbers::<2>(tokens)?;
                 Self::TransformTimes

@@ -123,7 +123,7 @@ impl State {
                 Some(system) => self.now.to_world = *system,
                 None => return Err(place.error(format!("there is no coordinate system \"{name}\""))),
             },
-            Directive::ActiveTransform(_) | Directive::TransformTimes => {
+            Directive::ActiveTransform | Directive::TransformTimes => {
                 context.unsupported(place, "motion is left out: transforms hold for the whole shot");
             }
             Directive::ReverseOrientation => self.now.is_reversed = !self.now.is_reversed,
