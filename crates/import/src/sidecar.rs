@@ -10,7 +10,7 @@ use tyndall_volumes::{Grid, WriteOptions};
 
 use crate::{ImportError, Mesh};
 
-/// A folder for meshes and grids; it is made when the first is written.
+/// A folder for meshes, grids and tables; it is made when the first is written.
 #[derive(Debug)]
 pub struct Sidecar {
     folder: PathBuf,
@@ -45,6 +45,16 @@ impl Sidecar {
         let path = self.path(name, "vdb")?;
         tyndall_volumes::write(&path, std::slice::from_ref(grid), &WriteOptions::default())
             .map_err(|error| ImportError::of(&self.folder, error.to_string()))
+    }
+
+    /// Writes a text to a file named after `name`; returns its absolute path.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_text(&self, name: &str, extension: &str, text: &str) -> Result<PathBuf, ImportError> {
+        let path = self.path(name, extension)?;
+        fs::write(&path, text).map_err(|error| unwritable(&path, &error.to_string()))?;
+        Ok(path)
     }
 
     /// An absolute path that no other file of this sidecar has.
