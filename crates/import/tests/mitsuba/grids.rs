@@ -107,10 +107,8 @@ fn cube_to_world(keys: &str) -> DAffine3 {
 /// Points of the unit cube, some close to its faces.
 fn points() -> Vec<DVec3> {
     let steps = [0.001, 0.05, 0.2, 0.37, 0.5, 0.76, 0.93, 0.999];
-    steps
-        .iter()
-        .flat_map(|x| steps.iter().flat_map(move |y| steps.iter().map(move |z| DVec3::new(*x, *y, *z))))
-        .collect()
+    let point = |at: usize| DVec3::new(steps[at / 64], steps[at / 8 % 8], steps[at % 8]);
+    (0..512).map(point).collect()
 }
 
 fn assert_values(scene: &SceneDescription, keys: &str, values: &[f32]) {

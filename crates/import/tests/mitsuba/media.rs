@@ -161,8 +161,10 @@ fn tables_and_other_blends_are_tabulated() {
         let phase = imported.description.volumes[0].medium.phase.clone().unwrap();
         assert!(matches!(phase, PhaseDescription::Tabulated { .. }));
         let built = tyndall_scene::build_phase(&phase, folder.0.path()).unwrap();
-        move |cosine: f64| {
-            let value = built.at(550.0).value(cosine);
+        move |cosine: f64| -> f64 {
+            let value = built
+                .at(550.0)
+                .value(glam::DVec3::Z, glam::DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine));
             drop(&folder);
             value
         }
