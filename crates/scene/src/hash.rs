@@ -6,7 +6,10 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::description::{LightDescription, PhaseDescription, RenderDescription, SceneDescription};
+use crate::canonical_names::without_names;
+use crate::description::{
+    LightDescription, MaterialChoice, PhaseDescription, RenderDescription, SceneDescription,
+};
 use crate::error::SceneError;
 
 /// The first 128 bits of a SHA-256 over everything that determines the expected picture.
@@ -22,7 +25,7 @@ impl fmt::Display for SceneHash {
 /// Hash of a scene whose file names are relative to `folder`.
 ///
 /// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
-/// lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
+/// shapes, materials, lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
 /// are, names, the unit (unless media are given in physical units), comments, samples per pixel, seed, integrator,
 /// exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
@@ -34,6 +37,7 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
     canonical.meters.clear();
+    without_names(&mut canonical);
     let RenderDescription { max_depth, mode, .. } = description.render;
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     let media =
@@ -46,7 +50,6 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
         }
     }
     for volume in &mut canonical.volumes {
-        volume.name = None;
         let of_fields = [
             volume.emission_grid.as_mut().map(|grid| &mut grid.file),
             volume.temperature.as_mut().map(|grid| &mut grid.file),
@@ -55,6 +58,16 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
         for file in of_fields.into_iter().flatten().chain([&mut volume.file]).flatten() {
             *file = content_hash(&folder.join(&file))?;
         }
+    }
+    for mesh in canonical.shapes.iter_mut().filter_map(|shape| shape.mesh.as_mut()) {
+        if let Some(file) = &mut mesh.file {
+            *file = content_hash(&folder.join(&file))?;
+        }
+    }
+    let in_shapes = canonical.shapes.iter_mut().filter_map(|shape| shape.material.as_mut());
+    let of_materials = canonical.materials.iter_mut().flat_map(|named| named.material.pictures_mut());
+    for picture in of_materials.chain(in_shapes.flat_map(MaterialChoice::pictures_mut)) {
+        *picture = content_hash(&folder.join(&picture))?;
     }
     for light in &mut canonical.lights {
         if let LightDescription::Image(image) = light {

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use tyndall_optics::Spectrum;
 
-use crate::light::Light;
-use crate::surface::Surfaces;
+use crate::light::{Light, LightTree};
+use crate::surface::{Boundaries, Presence, Surfaces};
 use crate::{Camera, Observer, Volume};
 
 /// Everything that transport needs, in world space.
@@ -22,12 +22,17 @@ pub struct Scene {
     /// light is the spectrum times the luminance of what it shines in RGB. Lights beyond its end have none.
     pub light_spectra: Vec<Option<Spectrum>>,
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
-    /// well by themselves, and sums to 1 unless it is 0 for all.
+    /// well by themselves, and sums to 1 unless it is 0 for all. Of lights in the tree only their sum matters.
     pub light_probabilities: Vec<f64>,
+    /// Chooses by place among lights that are somewhere, if these are many. Lights at infinity have their share whatever
+    /// the place: the light that enters the scene from there, compared to the power of those inside.
+    pub light_tree: Option<LightTree>,
     /// Surfaces.
     pub surfaces: Surfaces,
-    /// Numbers of the volumes bounded by shapes in which the camera is; to be found out if absent.
-    pub camera_inside: Option<Vec<usize>>,
+    /// Which volumes the surfaces bound.
+    pub boundaries: Boundaries,
+    /// The volumes that are present where all rays of the camera begin; to be found for each ray if absent.
+    pub camera_presence: Option<Presence>,
     /// Greatest number of scattering events on a path; unlimited if absent.
     pub max_depth: Option<u32>,
     /// What the channels of the picture are.
@@ -48,10 +53,22 @@ impl Scene {
     /// Number of the light for next-event estimation at `from` for `u` in [0, 1), and the probability with which it was
     /// drawn.
     pub fn choose_light(&self, from: DVec3, u: f64) -> Option<(usize, f64)> {
-        let _ = from;
+        let Some(tree) = &self.light_tree else {
+            return self.choose_among(0..self.light_probabilities.len(), u);
+        };
+        let beside = 1.0 - tree.share();
+        if u < beside {
+            return self.choose_among(tree.others().iter().copied(), u);
+        }
+        let (number, probability) = tree.choose(from, (u - beside) / tree.share());
+        Some((number, tree.share() * probability))
+    }
+
+    fn choose_among(&self, numbers: impl Iterator<Item = usize>, u: f64) -> Option<(usize, f64)> {
         let mut rest = u;
         let mut last = None;
-        for (number, &probability) in self.light_probabilities.iter().enumerate() {
+        for number in numbers {
+            let probability = self.light_probabilities[number];
             if probability <= 0.0 {
                 continue;
             }
@@ -64,10 +81,31 @@ impl Scene {
         last
     }
 
+    /// The volumes that are present where a ray of the camera begins.
+    pub fn presence_at_camera(&self, origin: DVec3) -> Presence {
+        match &self.camera_presence {
+            Some(presence) => presence.clone(),
+            None => self.boundaries.presence_at(origin, &self.surfaces),
+        }
+    }
+
+    /// Number of the light that the volume of this number is, if it is one.
+    pub fn light_of_volume(&self, volume: usize) -> Option<usize> {
+        self.lights.iter().position(|light| matches!(light, Light::Volume(light) if light.volume() == volume))
+    }
+
     /// Probability with which [`choose_light`](Self::choose_light) draws the light of this number at `from`.
     pub fn light_probability(&self, number: usize, from: DVec3) -> f64 {
-        let _ = from;
-        self.light_probabilities[number]
+        match &self.light_tree {
+            Some(tree) if tree.contains(number) => tree.share() * tree.probability(number, from),
+            _ => self.light_probabilities[number],
+        }
+    }
+
+    /// Draws lights with these probabilities from now on, whatever the place.
+    pub fn set_light_probabilities(&mut self, probabilities: Vec<f64>) {
+        self.light_probabilities = probabilities;
+        self.light_tree = None;
     }
 }
 
@@ -88,7 +126,7 @@ pub(crate) fn light_probabilities(lights: &[Light], scene_radius: f64) -> Vec<f6
 fn unevenness(light: &Light) -> f64 {
     match light {
         Light::Constant(_) => return 0.0,
-        Light::Point(_) | Light::Spot(_) | Light::Area(_) => return 1.0,
+        Light::Point(_) | Light::Spot(_) | Light::Area(_) | Light::Volume(_) => return 1.0,
         Light::Image(_) | Light::Sun(_) | Light::Distant(_) => {}
     }
     let luminance = |radiance: DVec3| radiance.element_sum();
@@ -136,7 +174,7 @@ mod tests {
         assert_eq!(light_probabilities, [0.25, 0.0, 0.75]);
         let camera = "camera = { position = [0, 0, 1], target = [0, 0, 0] }";
         let description = crate::SceneDocument::parse("test", camera).unwrap().description().unwrap();
-        let camera = Camera::new(&description.camera, [1, 1]);
+        let camera = Camera::new(&description.camera, [1, 1], None);
         let scene = Scene {
             camera,
             resolution: [1, 1],
@@ -144,8 +182,10 @@ mod tests {
             light_spectra: vec![None; lights.len()],
             lights,
             light_probabilities,
+            light_tree: None,
             surfaces: Surfaces::default(),
-            camera_inside: None,
+            boundaries: Boundaries::default(),
+            camera_presence: None,
             max_depth: None,
             observer: Observer::Rgb,
         };

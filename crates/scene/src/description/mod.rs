@@ -11,6 +11,7 @@ mod emission;
 mod film;
 mod lights;
 mod material;
+mod material_rules;
 mod medium;
 mod meter;
 mod meter_rules;
@@ -22,6 +23,7 @@ mod quantity;
 mod rgb;
 mod rules;
 mod shape;
+mod shape_rules;
 mod spectrum;
 mod spheres;
 mod transform;
@@ -41,6 +43,7 @@ pub use material::{
     CheckerTexture, ImageTexture, IndexChoice, MaterialChoice, MaterialDescription, NamedMaterial, Roughness,
     TextureDescription, TextureWrap,
 };
+pub(crate) use material_rules::{material_of_name, no_metal, no_substance};
 pub use medium::MediumDescription;
 pub use meter::{
     BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,
@@ -55,6 +58,7 @@ pub use shape::{
     CylinderShape, DiscShape, MeshShape, Names, PlaneShape, RectangleShape, ShapeDescription, ShapeGeometry,
     SurfaceEmission,
 };
+pub(crate) use shape_rules::unknown_volume;
 pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
 pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};

@@ -10,14 +10,17 @@ mod area;
 mod build;
 mod constant;
 mod distant;
+mod emission_bounds;
 mod equirectangular;
 mod image;
-mod image_file;
+pub(crate) mod image_file;
 mod point;
 mod spherical_rectangle;
 mod spot;
 mod sun;
 mod texel_distribution;
+mod tree;
+mod volume_light;
 
 use glam::DVec3;
 
@@ -31,6 +34,8 @@ pub use self::image_file::read_light_image;
 pub use self::point::PointLight;
 pub use self::spot::SpotLight;
 pub use self::sun::SunLight;
+pub use self::tree::LightTree;
+pub use self::volume_light::{VolumeLight, VolumeLightSample};
 
 /// A light. The clear sky is an image and, if it shines, a sun.
 #[derive(Debug, Clone)]
@@ -49,6 +54,8 @@ pub enum Light {
     Spot(SpotLight),
     /// A surface that shines.
     Area(AreaLight),
+    /// A medium that glows.
+    Volume(VolumeLight),
 }
 
 /// A direction in which a light was found.
@@ -73,7 +80,8 @@ impl LightSample {
 }
 
 impl Light {
-    /// A direction towards the light from the point `from`; `u` is uniform in [0, 1)².
+    /// A direction towards the light from the point `from`; `u` is uniform in [0, 1)². A medium that glows has points on
+    /// all the way, and no light by this sample: see [`VolumeLight::sample`].
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
         match self {
             Self::Constant(light) => light.sample(u),
@@ -83,6 +91,7 @@ impl Light {
             Self::Point(light) => light.sample(from),
             Self::Spot(light) => light.sample(from),
             Self::Area(light) => light.sample(from, u),
+            Self::Volume(_) => LightSample::NONE,
         }
     }
 
@@ -93,7 +102,9 @@ impl Light {
             Self::Constant(light) => light.radiance(),
             Self::Image(light) => light.radiance(direction),
             Self::Sun(light) => light.radiance(direction),
-            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) => DVec3::ZERO,
+            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) | Self::Volume(_) => {
+                DVec3::ZERO
+            }
         }
     }
 
@@ -104,7 +115,7 @@ impl Light {
             Self::Constant(light) => light.pdf(),
             Self::Image(light) => light.pdf(direction),
             Self::Sun(light) => light.pdf(direction),
-            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) => 0.0,
+            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) | Self::Volume(_) => 0.0,
         }
     }
 
@@ -120,6 +131,7 @@ impl Light {
             Self::Point(light) => mean(light.power()),
             Self::Spot(light) => mean(light.power()),
             Self::Area(light) => mean(light.power()),
+            Self::Volume(light) => mean(light.power()),
         }
     }
 

@@ -8,6 +8,7 @@ use serde_json::Value as Schema;
 
 use super::tree::{Entry, Node, Place, Value};
 use crate::error::Problem;
+use crate::suggestion::{did_you_mean, list_of, nearest};
 
 /// Greatest magnitude of any number: products of a few such numbers stay finite in double precision.
 const GREATEST: f64 = 1e30;
@@ -286,27 +287,4 @@ fn range_in_words(schema: &Schema) -> String {
         // No other pair of bounds is in the schema.
         _ => " within its range".to_owned(),
     }
-}
-
-/// `, did you mean …?`, or what there is to choose from.
-fn did_you_mean<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> String {
-    let choices: Vec<&str> = choices.collect();
-    match nearest(word, choices.iter().copied()) {
-        Some(choice) => format!(", did you mean `{choice}`?"),
-        None if choices.is_empty() => String::new(),
-        None => format!("; there is {}", list_of(choices)),
-    }
-}
-
-/// The choice that differs least from `word`, in a third of the letters at most.
-fn nearest<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    choices
-        .map(|choice| (strsim::damerau_levenshtein(&word.to_lowercase(), choice), choice))
-        .min_by_key(|(distance, _)| *distance)
-        .filter(|(distance, choice)| 3 * distance <= word.chars().count().max(choice.len()))
-        .map(|(_, choice)| choice)
-}
-
-fn list_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
