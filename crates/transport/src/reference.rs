@@ -186,6 +186,7 @@ impl Layers {
             emission: self.emission.as_vec3().to_array(),
             single: self.single.as_vec3().to_array(),
             multiple: self.multiple.as_vec3().to_array(),
+            ..Sample::default()
         }
     }
 }

@@ -106,8 +106,7 @@ fn render(
     number: u64,
 ) -> miette::Result<(Film, f64)> {
     let [width, height] = scene.resolution;
-    let layers = Layers { depth: false, albedo: false, emission: false, single: false, multiple: false };
-    let mut film = Film::new(width, height, layers).into_diagnostic()?;
+    let mut film = Film::new(width, height, Layers::NONE).into_diagnostic()?;
     film.open_range(0).into_diagnostic()?;
     let render_options = RenderOptions {
         integrator: Integrator::Reference,

@@ -358,6 +358,7 @@ impl<'a> Engine<'a> {
             emission: path.emission.to_array(),
             single: path.single.to_array(),
             multiple: path.multiple.to_array(),
+            ..Sample::default()
         };
         self.tiles[path.pixel.tile as usize].add(path.pixel.x, path.pixel.y, &sample);
     }

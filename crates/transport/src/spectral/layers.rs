@@ -44,6 +44,7 @@ impl Layers {
             emission: colour(self.emission),
             single: colour(self.single),
             multiple: colour(self.multiple),
+            ..Sample::default()
         }
     }
 }
