@@ -237,14 +237,22 @@ fn open_picture(
     Ok(saved)
 }
 
+/// The layers that the scene asks for; if it does not say, those that are about something in it. Shadow catchers always
+/// have theirs, which the picture's alpha needs.
 fn layers(description: &SceneDescription) -> Layers {
-    let wanted = |layer| description.film.layers.as_ref().is_none_or(|layers| layers.contains(&layer));
+    let asked = description.film.layers.as_ref();
+    let wanted = |layer| asked.is_none_or(|layers| layers.contains(&layer));
+    let of_surfaces = |layer| wanted(layer) && (asked.is_some() || !description.shapes.is_empty());
+    let has_catcher = description.shapes.iter().any(|shape| shape.shadow_catcher);
     Layers {
         depth: wanted(Layer::Depth),
         albedo: wanted(Layer::Albedo),
         emission: wanted(Layer::Emission),
         single: wanted(Layer::Single),
         multiple: wanted(Layer::Multiple),
+        normal: of_surfaces(Layer::Normal),
+        object_id: of_surfaces(Layer::ObjectId),
+        shadow_catcher: has_catcher || asked.is_some_and(|layers| layers.contains(&Layer::ShadowCatcher)),
     }
 }
 
