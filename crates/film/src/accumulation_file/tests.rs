@@ -16,6 +16,7 @@ fn metadata() -> ImageMetadata {
         options: "integrator=fast".into(),
         seed: 7,
         colours: Colours::Xyz,
+        crop: None,
         seconds: 2.0,
     }
 }
