@@ -86,8 +86,10 @@ pub(crate) fn light_probabilities(lights: &[Light], scene_radius: f64) -> Vec<f6
 
 /// 1 − (mean L)²/mean(L²) over all directions: 0 for constant light, near 1 for a bright spot.
 fn unevenness(light: &Light) -> f64 {
-    if matches!(light, Light::Constant(_)) {
-        return 0.0;
+    match light {
+        Light::Constant(_) => return 0.0,
+        Light::Point(_) | Light::Spot(_) | Light::Area(_) => return 1.0,
+        Light::Image(_) | Light::Sun(_) | Light::Distant(_) => {}
     }
     let luminance = |radiance: DVec3| radiance.element_sum();
     let (mut first, mut second) = (0.0, 0.0);

@@ -243,12 +243,12 @@ fn light() -> impl Strategy<Value = LightDescription> {
     prop_oneof![
         light_colours()
             .prop_map(|radiance| LightDescription::Constant(ConstantLightDescription { radiance })),
-        (words(), number(), positive()).prop_map(|(file, rotation, scale)| {
+        (words(), number(), positive(), any::<bool>()).prop_map(|(file, rotation, scale, is_turned)| {
             let filter = ImageFilter::Nearest;
             LightDescription::Image(ImageLightDescription {
                 file,
-                mapping: Default::default(),
-                orientation: None,
+                mapping: if is_turned { ImageMapping::EqualArea } else { ImageMapping::Equirectangular },
+                orientation: is_turned.then_some([0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0]),
                 rotation,
                 scale,
                 filter,
@@ -266,6 +266,19 @@ fn light() -> impl Strategy<Value = LightDescription> {
         (vector(), light_colours()).prop_map(|(position, intensity)| {
             LightDescription::Point(PointLightDescription { position, intensity })
         }),
+        (vector(), direction(), light_colours(), within(1e-3, 180.0), within(0.0, 1.0), any::<bool>())
+            .prop_map(|(position, direction, intensity, angle, inner, is_linear)| {
+                let falloff = if is_linear { SpotFalloff::Linear } else { SpotFalloff::Smooth };
+                let inner_angle = inner * angle;
+                LightDescription::Spot(SpotLightDescription {
+                    position,
+                    direction,
+                    intensity,
+                    angle,
+                    inner_angle,
+                    falloff,
+                })
+            }),
     ]
 }
 

@@ -272,6 +272,12 @@ fn light(found: &mut Findings, light: &LightDescription) {
         LightDescription::Spot(spot) => {
             found.report_zero("direction", spot.direction);
             light_spectrum(found, "intensity", &spot.intensity);
+            if spot.inner_angle > spot.angle {
+                found.report(
+                    "inner_angle",
+                    "`inner_angle` must not be greater than `angle`, the edge of the cone",
+                );
+            }
         }
         LightDescription::Image(_) => {}
     }

@@ -5,10 +5,14 @@ use std::path::Path;
 use glam::DVec3;
 use tyndall_optics::{Spectrum, cie};
 
-use super::{ConstantLight, DistantLight, ImageLight, Light, PointLight, SunLight, read_light_image};
-use crate::description::{ImageFilter, LightDescription, SpectrumDescription};
+use super::{
+    AreaLight, ConstantLight, DistantLight, ImageLight, Light, PointLight, SpotLight, SunLight,
+    read_light_image,
+};
+use crate::description::{ImageFilter, LightDescription, SpectrumDescription, SurfaceEmission};
 use crate::error::SceneError;
 use crate::sky::Sky;
+use crate::surface::WorldPrimitive;
 
 /// Lights ready to trace, and what the user should know of them.
 #[derive(Debug, Clone, Default)]
@@ -66,11 +70,13 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
                 built.lights.push(Light::Distant(DistantLight::new(direction, irradiance.light_rgb())));
                 own_spectrum = Some(irradiance);
             }
-            LightDescription::Spot(_) => {
-                return Err(SceneError::file(
-                    Path::new(&format!("light.{number}")),
-                    "spot lights are not known yet",
-                ));
+            LightDescription::Spot(spot) => {
+                let [position, direction] = [spot.position, spot.direction].map(DVec3::from_array);
+                let intensity = colour(&spot.intensity)?;
+                let angles = [spot.inner_angle, spot.angle];
+                let light = SpotLight::new(position, direction, intensity.light_rgb(), angles, spot.falloff);
+                built.lights.push(Light::Spot(light));
+                own_spectrum = Some(intensity);
             }
             LightDescription::Point(point) => {
                 let position = DVec3::from_array(point.position);
@@ -83,6 +89,31 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
         built.spectra.resize(built.lights.len(), own_spectrum.and_then(of_luminance_one));
     }
     Ok(built)
+}
+
+impl BuiltLights {
+    /// Adds the lamp that a shape called `name` is, and returns its number. `primitives` are the pieces of its surface, if
+    /// points of it can be drawn uniformly.
+    pub fn add_lamp(
+        &mut self,
+        name: &str,
+        emission: &SurfaceEmission,
+        primitives: Option<Vec<WorldPrimitive>>,
+    ) -> Result<usize, SceneError> {
+        let spectrum =
+            emission.radiance.light().map_err(|(_, message)| SceneError::file(Path::new(name), message))?;
+        let spectrum = spectrum.scaled(emission.scale);
+        if primitives.is_none() {
+            self.warnings.push(format!(
+                "{name}: only paths that meet this lamp by chance see its light, since it is infinite or a round shape \
+                 with different scales along its axes: a rectangle or a mesh in its place has less noise"
+            ));
+        }
+        let lamp = AreaLight::new(primitives.unwrap_or_default(), spectrum.light_rgb(), emission.two_sided);
+        self.lights.push(Light::Area(lamp));
+        self.spectra.push(of_luminance_one(spectrum));
+        Ok(self.lights.len() - 1)
+    }
 }
 
 /// The spectrum at luminance 1, if it is not made from red, green and blue.

@@ -1,9 +1,12 @@
 //! Lights ready to trace: each can be sampled from a point, and says what it shines from a direction.
 //!
 //! Infinite lights (constant, image, sun) have a radiance for every direction and a density of their samples
-//! over solid angle; distant and point lights are delta lights, which only sampling finds. All samplers are
-//! unbiased: the mean of `radiance_over_pdf · f(toward)` is the integral of `radiance · f` over the sphere.
+//! over solid angle; distant, point and spot lights are delta lights, which only sampling finds. Lamps are surfaces, on
+//! which paths may end as well: [`AreaLight`] says what they find there and with what density sampling would have drawn
+//! it. All samplers are unbiased: the mean of `radiance_over_pdf · f(toward)` is the integral of `radiance · f` over the
+//! sphere.
 
+mod area;
 mod build;
 mod constant;
 mod distant;
@@ -11,11 +14,14 @@ mod equirectangular;
 mod image;
 mod image_file;
 mod point;
+mod spherical_rectangle;
+mod spot;
 mod sun;
 mod texel_distribution;
 
 use glam::DVec3;
 
+pub use self::area::AreaLight;
 pub use self::build::{BuiltLights, build_lights};
 pub use self::constant::ConstantLight;
 pub use self::distant::DistantLight;
@@ -23,6 +29,7 @@ pub use self::equirectangular::{direction_to_uv, uv_to_direction};
 pub use self::image::{ImageLight, LightImage};
 pub use self::image_file::read_light_image;
 pub use self::point::PointLight;
+pub use self::spot::SpotLight;
 pub use self::sun::SunLight;
 
 /// A light. The clear sky is an image and, if it shines, a sun.
@@ -38,6 +45,10 @@ pub enum Light {
     Distant(DistantLight),
     /// A point.
     Point(PointLight),
+    /// A point that shines into a cone.
+    Spot(SpotLight),
+    /// A surface that shines.
+    Area(AreaLight),
 }
 
 /// A direction in which a light was found.
@@ -55,6 +66,12 @@ pub struct LightSample {
     pub is_delta: bool,
 }
 
+impl LightSample {
+    /// What is sampled where no light comes from. Its density is no one's, and not 0, by which weights would be divided.
+    pub(super) const NONE: Self =
+        Self { toward: DVec3::Y, distance: 0.0, radiance_over_pdf: DVec3::ZERO, pdf: 1.0, is_delta: false };
+}
+
 impl Light {
     /// A direction towards the light from the point `from`; `u` is uniform in [0, 1)².
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
@@ -64,28 +81,30 @@ impl Light {
             Self::Sun(light) => light.sample(u),
             Self::Distant(light) => light.sample(),
             Self::Point(light) => light.sample(from),
+            Self::Spot(light) => light.sample(from),
+            Self::Area(light) => light.sample(from, u),
         }
     }
 
     /// Radiance that arrives from far away along the unit vector `direction`, which points to where it comes
-    /// from. Zero for delta lights.
+    /// from. Zero for lights that are not at infinity or are delta lights.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         match self {
             Self::Constant(light) => light.radiance(),
             Self::Image(light) => light.radiance(direction),
             Self::Sun(light) => light.radiance(direction),
-            Self::Distant(_) | Self::Point(_) => DVec3::ZERO,
+            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) => DVec3::ZERO,
         }
     }
 
-    /// Density over solid angle, 1/sr, with which [`sample`](Self::sample) chooses `direction`; 0 for delta
-    /// lights.
+    /// Density over solid angle, 1/sr, with which [`sample`](Self::sample) chooses `direction`; 0 for lights that
+    /// are not at infinity or are delta lights.
     pub fn pdf(&self, direction: DVec3) -> f64 {
         match self {
             Self::Constant(light) => light.pdf(),
             Self::Image(light) => light.pdf(direction),
             Self::Sun(light) => light.pdf(direction),
-            Self::Distant(_) | Self::Point(_) => 0.0,
+            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) => 0.0,
         }
     }
 
@@ -99,6 +118,8 @@ impl Light {
             Self::Sun(light) => mean(light.irradiance()) * cross_section,
             Self::Distant(light) => mean(light.irradiance()) * cross_section,
             Self::Point(light) => mean(light.power()),
+            Self::Spot(light) => mean(light.power()),
+            Self::Area(light) => mean(light.power()),
         }
     }
 

@@ -1,10 +1,14 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
 mod material;
+mod mesh;
+mod world_primitive;
 
 use glam::DVec3;
 
 pub use self::material::Material;
+pub use self::mesh::{Mesh, read_mesh, write_ply};
+pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
 
 /// All surfaces of a scene.
@@ -54,6 +58,8 @@ pub struct Hit {
     pub shape: usize,
     /// Number of the primitive within the shape.
     pub primitive: usize,
+    /// Distance from the surface at which rays leave it: far above the rounding errors of the place.
+    pub offset: f64,
 }
 
 impl Surfaces {
@@ -83,9 +89,8 @@ impl Hit {
     /// Where a ray in `direction` leaves the surface from, on the side it goes to and far enough not to meet the same
     /// place again.
     pub fn leave(&self, direction: DVec3) -> DVec3 {
-        let size = self.position.abs().max_element().max(1.0);
         let side = if direction.dot(self.normal) < 0.0 { -1.0 } else { 1.0 };
-        self.position + self.normal * (side * size * 1e-10)
+        self.position + self.normal * (side * self.offset)
     }
 
     /// The local frame of [`tyndall_optics::bsdf`]: tangent, bitangent and shading normal.
