@@ -19,7 +19,7 @@ use crate::description::{
 use crate::light::build_lights;
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
-use crate::surface::Surfaces;
+use crate::surface::{Boundaries, Presence, Surfaces, VolumeNumber, build_surfaces, numbers_of};
 use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
 /// A scene, and what the user should know of how it came about.
@@ -64,28 +64,58 @@ pub fn build_with(
         volumes.push(build_volume(volume, name, &description.unit, folder, &tables, &mut grids, &mut notes)?);
     }
     // Nothing collides where there is no extinction.
-    volumes.retain(|volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO);
+    let is_there =
+        |volume: &Volume| volume.medium.mu_t > 0.0 || volume.medium.emission_per_length != DVec3::ZERO;
+    let mut count = 0..;
+    let numbers: Vec<VolumeNumber> = volumes
+        .iter()
+        .map(|volume| VolumeNumber {
+            name: volume.name.clone(),
+            number: if is_there(volume) { count.next() } else { None },
+        })
+        .collect();
+    volumes.retain(is_there);
+    let surfaces = build_surfaces(description, folder, &numbers, &mut notes)?;
 
     let lights = build_lights(&description.lights, folder)?;
     notes.extend(lights.warnings);
     if lights.lights.is_empty() && !volumes.iter().any(Volume::glows) {
         notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
     }
-    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes));
-    let resolution = description.film.resolution;
+    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes, &surfaces));
+    let camera = Camera::new(&description.camera, description.film.resolution, description.film.crop);
+    let boundaries = Boundaries::new(&surfaces, volumes.len());
+    let camera_presence = camera_presence(description, &camera, &boundaries, &surfaces, &numbers)?;
     let scene = Scene {
-        camera: Camera::new(&description.camera, resolution),
-        resolution,
-        volumes,
+        resolution: camera.resolution(),
+        camera,
         lights: lights.lights,
         light_spectra: lights.spectra,
         light_probabilities,
-        surfaces: Surfaces::default(),
-        camera_inside: None,
+        surfaces,
+        boundaries,
+        volumes,
+        camera_presence,
         max_depth: description.render.max_depth,
         observer: observers(description)[0],
     };
     Ok(BuiltScene { scene, grids, notes })
+}
+
+/// The volumes that are present where the camera is: as the description says, or found out once if all rays begin there.
+fn camera_presence(
+    description: &SceneDescription,
+    camera: &Camera,
+    boundaries: &Boundaries,
+    surfaces: &Surfaces,
+    volumes: &[VolumeNumber],
+) -> Result<Option<Presence>, SceneError> {
+    if let Some(inside) = &description.camera.inside {
+        let numbers = numbers_of(Some(inside), volumes)
+            .map_err(|message| SceneError::file(Path::new("camera"), format!("`inside`: {message}")))?;
+        return Ok(Some(boundaries.inside(&numbers)));
+    }
+    Ok(camera.pinhole().map(|place| boundaries.presence_at(place, surfaces)))
 }
 
 fn build_volume(
@@ -290,9 +320,9 @@ fn element(raw_type: RawType) -> Element {
     }
 }
 
-/// Radius of a sphere around the bounded volumes.
-fn scene_radius(volumes: &[Volume]) -> f64 {
-    let boxes = volumes.iter().filter_map(Volume::world_box);
+/// Radius of a sphere around the bounded volumes and surfaces.
+fn scene_radius(volumes: &[Volume], surfaces: &Surfaces) -> f64 {
+    let boxes = volumes.iter().filter_map(Volume::world_box).chain(surfaces.bounds());
     let all = boxes.reduce(|[low, high], [min, max]| [low.min(min), high.max(max)]);
     all.map_or(1.0, |[min, max]| 0.5 * (max - min).length())
 }

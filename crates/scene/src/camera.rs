@@ -1,4 +1,4 @@
-//! The perspective camera: a pinhole, or a thin lens of finite aperture.
+//! The camera: perspective (a pinhole, or a thin lens of finite aperture) or orthographic.
 //!
 //! A point of the film goes through the centre of the lens to the point in focus; a thin lens sends all rays
 //! from that film point through the same point in focus (Kolb, Mitchell & Hanrahan 1995, section 2). Pixels
@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::description::CameraDescription;
+use crate::description::{CameraDescription, Projection};
 
 /// A half-line; `direction` is of unit length, except in the local coordinates of a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,31 +31,47 @@ pub struct Camera {
     forward: DVec3,
     right: DVec3,
     up: DVec3,
-    /// Width and height of the film at distance 1 from the lens.
-    film_size: [f64; 2],
+    is_orthographic: bool,
+    /// Left, right, bottom and top edge of the film: at distance 1 from the lens, or in scene units of parallel rays.
+    window: [f64; 4],
+    /// Columns and rows of all of the film.
+    full_resolution: [u32; 2],
+    /// Left column and top row of the picture in it.
+    corner: [u32; 2],
+    /// Columns and rows of the picture.
     resolution: [u32; 2],
     aperture_radius: f64,
     focus_distance: f64,
 }
 
 impl Camera {
-    /// The camera of a description without [violations](crate::SceneDescription::violations), for pictures of
-    /// `resolution` pixels, which are square.
-    pub fn new(description: &CameraDescription, resolution: [u32; 2]) -> Self {
+    /// The camera of a description without [violations](crate::SceneDescription::violations), for a film of
+    /// `full_resolution` pixels, which are square unless the camera's window says otherwise, of which the picture is the
+    /// `crop`: left column, top row, width, height.
+    pub fn new(description: &CameraDescription, full_resolution: [u32; 2], crop: Option<[u32; 4]>) -> Self {
         let position = DVec3::from_array(description.position);
         let to_target = description.target.map(|target| DVec3::from_array(target) - position);
         let view = description.direction.map(DVec3::from_array).or(to_target).unwrap_or(DVec3::NEG_Z);
         let forward = view.normalize_or(DVec3::NEG_Z);
         let right =
             forward.cross(DVec3::from_array(description.up)).normalize_or(forward.any_orthonormal_vector());
-        let height = 2.0 * (0.5 * description.vertical_fov.to_radians()).tan();
+        let is_orthographic = description.projection == Projection::Orthographic;
+        let half_height = match description.height {
+            Some(height) if is_orthographic => 0.5 * height,
+            _ => (0.5 * description.vertical_fov.to_radians()).tan(),
+        };
+        let half_width = half_height * f64::from(full_resolution[0]) / f64::from(full_resolution[1]);
+        let [left, top, width, height] = crop.unwrap_or([0, 0, full_resolution[0], full_resolution[1]]);
         Self {
             position,
             forward,
             right,
             up: right.cross(forward),
-            film_size: [height * f64::from(resolution[0]) / f64::from(resolution[1]), height],
-            resolution,
+            is_orthographic,
+            window: description.window.unwrap_or([-half_width, half_width, -half_height, half_height]),
+            full_resolution,
+            corner: [left, top],
+            resolution: [width, height],
             aperture_radius: description.aperture_radius,
             focus_distance: description
                 .focus_distance
@@ -68,6 +84,11 @@ impl Camera {
         self.resolution
     }
 
+    /// Where all rays begin, if they do so in one place.
+    pub fn pinhole(&self) -> Option<DVec3> {
+        (!self.is_orthographic && self.aperture_radius == 0.0).then_some(self.position)
+    }
+
     /// The direction the camera looks in, of unit length.
     pub fn forward(&self) -> DVec3 {
         self.forward
@@ -78,8 +99,17 @@ impl Camera {
     /// `film_u` in [0, 1)² is the place in the pixel from its left upper corner, `lens_u` in [0, 1)² that on
     /// the lens.
     pub fn ray(&self, pixel: [u32; 2], film_u: [f64; 2], lens_u: [f64; 2]) -> Ray {
-        let x = ((f64::from(pixel[0]) + film_u[0]) / f64::from(self.resolution[0]) - 0.5) * self.film_size[0];
-        let y = (0.5 - (f64::from(pixel[1]) + film_u[1]) / f64::from(self.resolution[1])) * self.film_size[1];
+        let along = |axis: usize| {
+            (f64::from(self.corner[axis] + pixel[axis]) + film_u[axis])
+                / f64::from(self.full_resolution[axis])
+        };
+        let [left, right, bottom, top] = self.window;
+        let x = left + (right - left) * along(0);
+        let y = top + (bottom - top) * along(1);
+        if self.is_orthographic {
+            let origin = self.position + x * self.right + y * self.up;
+            return Ray { origin, direction: self.forward };
+        }
         let through_centre = self.forward + x * self.right + y * self.up;
         if self.aperture_radius == 0.0 {
             return Ray { origin: self.position, direction: through_centre.normalize() };
@@ -106,10 +136,9 @@ fn concentric_disc(u: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::Projection;
 
-    fn camera(aperture_radius: f64) -> Camera {
-        let description = CameraDescription {
+    fn description() -> CameraDescription {
+        CameraDescription {
             position: [0.0, 0.0, 5.0],
             target: Some([0.0, 0.0, 0.0]),
             direction: None,
@@ -119,10 +148,13 @@ mod tests {
             window: None,
             inside: None,
             vertical_fov: 90.0,
-            aperture_radius,
+            aperture_radius: 0.0,
             focus_distance: None,
-        };
-        Camera::new(&description, [200, 100])
+        }
+    }
+
+    fn camera(aperture_radius: f64) -> Camera {
+        Camera::new(&CameraDescription { aperture_radius, ..description() }, [200, 100], None)
     }
 
     const CENTRE: [f64; 2] = [0.5, 0.5];
@@ -141,6 +173,37 @@ mod tests {
         assert!((top - DVec3::new(0.0, 1.0, -1.0).normalize()).length() < 1e-12, "{top}");
         let left = camera(0.0).ray([0, 50], [0.0, 0.0], CENTRE).direction;
         assert!((left - DVec3::new(-2.0, 0.0, -1.0).normalize()).length() < 1e-12, "{left}");
+    }
+
+    #[test]
+    fn a_crop_is_the_same_pixels_of_the_whole_picture() {
+        let mut description = description();
+        description.aperture_radius = 0.0;
+        let whole = Camera::new(&description, [200, 100], None);
+        let part = Camera::new(&description, [200, 100], Some([30, 20, 50, 60]));
+        assert_eq!(part.resolution(), [50, 60]);
+        assert_eq!(part.ray([3, 5], CENTRE, CENTRE), whole.ray([33, 25], CENTRE, CENTRE));
+    }
+
+    #[test]
+    fn a_window_takes_the_place_of_the_angle_and_mirrors() {
+        let window = CameraDescription { window: Some([2.0, -2.0, -1.0, 1.0]), ..description() };
+        let [mirrored, plain] = [&window, &description()].map(|camera| Camera::new(camera, [200, 100], None));
+        let direction = |camera: &Camera, column| camera.ray([column, 30], CENTRE, CENTRE).direction;
+        assert!((direction(&mirrored, 20) - direction(&plain, 179)).length() < 1e-12);
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel_and_as_far_apart_as_the_height_says() {
+        let description =
+            CameraDescription { projection: Projection::Orthographic, height: Some(4.0), ..description() };
+        let camera = Camera::new(&description, [200, 100], None);
+        let [top, bottom] = [0, 99].map(|row| camera.ray([7, row], CENTRE, CENTRE));
+        assert_eq!(top.direction, DVec3::NEG_Z);
+        assert_eq!(bottom.direction, DVec3::NEG_Z);
+        assert!(((top.origin - bottom.origin) - DVec3::new(0.0, 3.96, 0.0)).length() < 1e-12);
+        let right = camera.ray([199, 50], CENTRE, CENTRE).origin;
+        assert!((right.x - 3.98).abs() < 1e-12, "{right}");
     }
 
     #[test]

@@ -58,11 +58,11 @@ impl Field {
         }
     }
 
-    /// The distances between which the local ray is inside the grid's domain, cut to [0, `end`].
-    pub fn interval(&self, local: &Ray, end: f64) -> Option<(f64, f64)> {
+    /// The distances between which the local ray is inside the grid's domain, cut to those from `start` to `end`.
+    pub fn interval(&self, local: &Ray, (start, end): (f64, f64)) -> Option<(f64, f64)> {
         let [min, max] = self.grid.domain();
         let (enter, leave) = box_interval(local, min, max)?;
-        let (enter, leave) = (enter.max(0.0), leave.min(end));
+        let (enter, leave) = (enter.max(start), leave.min(end));
         (enter < leave).then_some((enter, leave))
     }
 

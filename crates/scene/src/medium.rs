@@ -117,11 +117,11 @@ impl Volume {
         }
     }
 
-    /// The distances between which the local ray is inside the density, cut to [0, `end`]; for a grid, inside its
-    /// domain.
-    pub fn interval(&self, local: &Ray, end: f64) -> Option<(f64, f64)> {
+    /// The distances between which the local ray is inside the density, cut to those from `start` to `end`; for a grid,
+    /// inside its domain.
+    pub fn interval(&self, local: &Ray, (start, end): (f64, f64)) -> Option<(f64, f64)> {
         let (enter, leave) = match &self.density {
-            Density::Everywhere => (0.0, end),
+            Density::Everywhere => (start, end),
             Density::Box { min, max } => box_interval(local, *min, *max)?,
             Density::Slab { bottom, top } | Density::Atmosphere { bottom, top, .. } => {
                 let infinite = DVec3::splat(f64::INFINITY);
@@ -133,7 +133,7 @@ impl Volume {
                 box_interval(local, min, max)?
             }
         };
-        let (enter, leave) = (enter.max(0.0), leave.min(end));
+        let (enter, leave) = (enter.max(start), leave.min(end));
         (enter < leave).then_some((enter, leave))
     }
 
@@ -238,7 +238,7 @@ mod tests {
     }
 
     fn interval(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
-        volume.interval(&volume.local_ray(&Ray { origin, direction }), 100.0)
+        volume.interval(&volume.local_ray(&Ray { origin, direction }), (0.0, 100.0))
     }
 
     #[test]
@@ -280,7 +280,7 @@ mod tests {
         // Straight up from 5 to infinity there is e^-2 · 2 in all.
         let up = Ray { origin: DVec3::new(0.0, 5.0, 0.0), direction: DVec3::Y };
         let all = 2.0 * (-2.0_f64).exp();
-        assert_eq!(atmosphere.interval(&up, f64::INFINITY), Some((0.0, f64::INFINITY)));
+        assert_eq!(atmosphere.interval(&up, (0.0, f64::INFINITY)), Some((0.0, f64::INFINITY)));
         assert!((atmosphere.density_integral(&up, (0.0, f64::INFINITY)).unwrap() - all).abs() < 1e-15);
         assert_eq!(atmosphere.distance_of_integral(&up, 0.0, 1.001 * all), f64::INFINITY);
         // Down from where the density underflows: half of all there is lies above 1 + 2 ln 2.

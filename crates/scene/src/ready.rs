@@ -4,7 +4,7 @@ use glam::DVec3;
 use tyndall_optics::Spectrum;
 
 use crate::light::Light;
-use crate::surface::Surfaces;
+use crate::surface::{Boundaries, Presence, Surfaces};
 use crate::{Camera, Observer, Volume};
 
 /// Everything that transport needs, in world space.
@@ -26,8 +26,10 @@ pub struct Scene {
     pub light_probabilities: Vec<f64>,
     /// Surfaces.
     pub surfaces: Surfaces,
-    /// Numbers of the volumes bounded by shapes in which the camera is; to be found out if absent.
-    pub camera_inside: Option<Vec<usize>>,
+    /// Which volumes the surfaces bound.
+    pub boundaries: Boundaries,
+    /// The volumes that are present where all rays of the camera begin; to be found for each ray if absent.
+    pub camera_presence: Option<Presence>,
     /// Greatest number of scattering events on a path; unlimited if absent.
     pub max_depth: Option<u32>,
     /// What the channels of the picture are.
@@ -64,6 +66,19 @@ impl Scene {
         last
     }
 
+    /// The volumes that are present where a ray of the camera begins.
+    pub fn presence_at_camera(&self, origin: DVec3) -> Presence {
+        match &self.camera_presence {
+            Some(presence) => presence.clone(),
+            None => self.boundaries.presence_at(origin, &self.surfaces),
+        }
+    }
+
+    /// Number of the light that the volume of this number is, if it is one.
+    pub fn light_of_volume(&self, volume: usize) -> Option<usize> {
+        self.lights.iter().position(|light| matches!(light, Light::Volume(light) if light.volume() == volume))
+    }
+
     /// Probability with which [`choose_light`](Self::choose_light) draws the light of this number at `from`.
     pub fn light_probability(&self, number: usize, from: DVec3) -> f64 {
         let _ = from;
@@ -88,7 +103,7 @@ pub(crate) fn light_probabilities(lights: &[Light], scene_radius: f64) -> Vec<f6
 fn unevenness(light: &Light) -> f64 {
     match light {
         Light::Constant(_) => return 0.0,
-        Light::Point(_) | Light::Spot(_) | Light::Area(_) => return 1.0,
+        Light::Point(_) | Light::Spot(_) | Light::Area(_) | Light::Volume(_) => return 1.0,
         Light::Image(_) | Light::Sun(_) | Light::Distant(_) => {}
     }
     let luminance = |radiance: DVec3| radiance.element_sum();
@@ -136,7 +151,7 @@ mod tests {
         assert_eq!(light_probabilities, [0.25, 0.0, 0.75]);
         let camera = "camera = { position = [0, 0, 1], target = [0, 0, 0] }";
         let description = crate::SceneDocument::parse("test", camera).unwrap().description().unwrap();
-        let camera = Camera::new(&description.camera, [1, 1]);
+        let camera = Camera::new(&description.camera, [1, 1], None);
         let scene = Scene {
             camera,
             resolution: [1, 1],
@@ -145,7 +160,8 @@ mod tests {
             lights,
             light_probabilities,
             surfaces: Surfaces::default(),
-            camera_inside: None,
+            boundaries: Boundaries::default(),
+            camera_presence: None,
             max_depth: None,
             observer: Observer::Rgb,
         };

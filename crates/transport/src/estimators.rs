@@ -13,6 +13,7 @@ use crate::distance::{DistanceSampler, Flight, sample_distance};
 use crate::equiangular_light::LitSegment;
 use crate::properties::{Need, Properties, Reason};
 use crate::transmittance::{TransmittanceEstimator, estimate_transmittance};
+use crate::way::Way;
 
 /// A choice of estimators; what is best as a rule where there is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -25,8 +26,9 @@ pub struct Estimators {
 }
 
 /// A stretch of a path: see [`Flight`].
-pub(crate) struct SceneFlight<'a> {
-    pub collision: Option<(f64, &'a Volume)>,
+pub(crate) struct SceneFlight {
+    /// Distance, and number of the volume.
+    pub collision: Option<(f64, usize)>,
     pub weight: f64,
     pub escape: f64,
 }
@@ -63,55 +65,57 @@ impl Estimators {
         distance.into_iter().chain(self.transmittance.map(TransmittanceEstimator::properties))
     }
 
-    /// The next collision along `ray`, and what escapes.
-    pub(crate) fn fly<'a>(&self, scene: &'a Scene, ray: &Ray, random: &mut Random) -> SceneFlight<'a> {
+    /// The next collision along `ray` on its way, and what escapes.
+    pub(crate) fn fly(&self, scene: &Scene, ray: &Ray, way: &Way, random: &mut Random) -> SceneFlight {
         let Some(sampler) = self.distance.filter(|sampler| *sampler != DistanceSampler::Equiangular) else {
-            return first_of_all(scene, ray, random);
+            return first_of_all(scene, ray, way, random);
         };
-        let Some(along) = AlongRay::through(&scene.volumes, ray, f64::INFINITY) else {
+        let Some(along) = AlongRay::through_spans(&scene.volumes, &way.spans, ray) else {
             return SceneFlight { collision: None, weight: 0.0, escape: 1.0 };
         };
         let Flight { t, weight, escape } = sampler.sample(&along, random, &mut Lookups::default());
         let at = |t| {
             // One volume needs no draw, so that a choice of the default gives the default's bits.
             let u = if scene.volumes.len() == 1 { 0.0 } else { random.f64() };
-            (t, &scene.volumes[along.volume_at(t, u)])
+            (t, along.volume_at(t, u))
         };
         SceneFlight { collision: t.map(at), weight, escape }
     }
 
     /// A collision that happens with the true probability, which those of weighted flights do not.
-    pub(crate) fn analog_collision<'a>(
+    pub(crate) fn analog_collision(
         &self,
-        scene: &'a Scene,
+        scene: &Scene,
         ray: &Ray,
-        flight: &SceneFlight<'a>,
+        way: &Way,
+        flight: &SceneFlight,
         random: &mut Random,
-    ) -> Option<(f64, &'a Volume)> {
+    ) -> Option<(f64, usize)> {
         let is_weighted = self.distance.is_some_and(|sampler| !sampler.is_analog());
         let is_equiangular = self.distance == Some(DistanceSampler::Equiangular);
         if is_weighted && !is_equiangular {
-            first_of_all(scene, ray, random).collision
+            first_of_all(scene, ray, way, random).collision
         } else {
             flight.collision
         }
     }
 
     /// The ray as a place to sample point lights from, if that is wanted.
-    pub(crate) fn lit_segment<'a>(&self, scene: &'a Scene, ray: &Ray) -> Option<LitSegment<'a>> {
+    pub(crate) fn lit_segment<'a>(&self, scene: &'a Scene, ray: &Ray, way: &Way) -> Option<LitSegment<'a>> {
         let is_wanted = self.distance == Some(DistanceSampler::Equiangular);
-        is_wanted.then(|| LitSegment::new(scene, ray))?
+        is_wanted.then(|| LitSegment::new(scene, ray, way))?
     }
 
-    /// An estimate of the transmittance of all volumes along `ray` up to `end`.
-    pub(crate) fn transmittance(&self, scene: &Scene, ray: &Ray, end: f64, random: &mut Random) -> f64 {
+    /// An estimate of the transmittance of all volumes along the way of `ray`.
+    pub(crate) fn transmittance(&self, scene: &Scene, ray: &Ray, way: &Way, random: &mut Random) -> f64 {
         if let Some(estimator) = self.transmittance {
-            return AlongRay::through(&scene.volumes, ray, end)
+            return AlongRay::through_spans(&scene.volumes, &way.spans, ray)
                 .map_or(1.0, |along| estimator.estimate(&along, random, &mut Lookups::default()));
         }
         let mut transmittance = 1.0;
-        for volume in &scene.volumes {
-            transmittance *= estimate_transmittance(volume, ray, end, random);
+        for span in &way.spans {
+            let volume = &scene.volumes[span.volume];
+            transmittance *= estimate_transmittance(volume, ray, (span.start, span.end), random);
             if transmittance == 0.0 {
                 return 0.0;
             }
@@ -121,13 +125,14 @@ impl Estimators {
 }
 
 /// The nearest of the first collisions with each of the volumes.
-fn first_of_all<'a>(scene: &'a Scene, ray: &Ray, random: &mut Random) -> SceneFlight<'a> {
+fn first_of_all(scene: &Scene, ray: &Ray, way: &Way, random: &mut Random) -> SceneFlight {
     let mut collision = None;
-    let mut end = f64::INFINITY;
-    for volume in &scene.volumes {
-        if let Some(distance) = sample_distance(volume, ray, end, random) {
+    let mut end = way.end;
+    for span in &way.spans {
+        let volume = &scene.volumes[span.volume];
+        if let Some(distance) = sample_distance(volume, ray, (span.start, span.end.min(end)), random) {
             end = distance;
-            collision = Some((distance, volume));
+            collision = Some((distance, span.volume));
         }
     }
     let weight = if collision.is_some() { 1.0 } else { 0.0 };

@@ -1,28 +1,34 @@
 //! The reference integrator: a path tracer of the volume rendering equation, one path at a time, in f64.
 //!
-//!   L(x,ω) = ∫₀^z T(x,y) [ μa(y) Le(y) + μs(y) Ls(y,ω) ] dy + T(x,z) Lo(ω),   Ls(y,ω) = ∫ f_p(ω,ω′) L(y,ω′) dω′
+//!   L(x,ω) = ∫₀^z T(x,y) [ μa(y) Le(y) + μs(y) Ls(y,ω) ] dy + T(x,z) Lo(z,ω),   Ls(y,ω) = ∫ f_p(ω,ω′) L(y,ω′) dω′
 //!
-//! It is plain to read and is the oracle for every faster way. Term by term:
+//! where Lo is what surfaces send out and reflect, Lo(z,ω) = Le(z,ω) + ∫ f(ω,ω′) |cos θ′| L(z,ω′) dω′, or, where there is no
+//! surface, the light of the surroundings. It is plain to read and is the oracle for every faster way. Term by term:
+//! - a ray's [way](Way) is the volumes that it crosses and the surface z at which it ends;
 //! - y is drawn with density μt·T by distance sampling, so T μt cancels and a collision leaves
-//!   (1 − albedo)·Le + albedo·Ls, while a ray that leaves without one has met T·Lo;
-//! - light that is given per length is gathered on the way to that collision (see [`emission_along`]);
-//! - Ls is split between next-event estimation (a light is drawn, the transmittance towards it estimated) and
-//!   the continued path (a direction is drawn from the phase function), joined by multiple importance sampling with
-//!   the balance heuristic (Veach 1997, chapter 9);
-//! - a path ends when it leaves, at `max_depth` scattering events, or by Russian roulette on its throughput.
+//!   (1 − albedo)·Le + albedo·Ls, while a ray that goes through without one has met T·Lo;
+//! - light that is given per length is gathered on the way to that collision (see [`emission`](crate::emission));
+//! - Ls, and the integral in Lo, are split between next-event estimation (a light is drawn, the transmittance towards it
+//!   estimated) and the continued path (a direction is drawn from the phase function or from f), joined by multiple
+//!   importance sampling with the balance heuristic (Veach 1997, chapter 9);
+//! - a path ends when it leaves, at `max_depth` turns, or by Russian roulette on its throughput.
 //!
 //! Any pair of a distance sampler and a transmittance estimator fits in ([`Estimators`]). One whose flights have weights
-//! multiplies the throughput by them; a flight may have both a collision and an escape. Negative weights count in roulette
-//! by their size.
+//! multiplies the throughput by them; where a flight has both a collision and a part that escapes to a surface, the path
+//! goes on to one of them. Negative weights count in roulette by their size.
 
 use glam::DVec3;
 use tyndall_film::Sample;
 use tyndall_lanes::Random;
-use tyndall_scene::{Light, Ray, Scene, Volume};
+use tyndall_scene::surface::Presence;
+use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
-use crate::emission::emission_along;
-use crate::equiangular_light::LitSegment;
-use crate::estimators::Estimators;
+use crate::emission::weighted_emission_along;
+use crate::equiangular_light::{Found, LitSegment};
+use crate::estimators::{Estimators, SceneFlight};
+use crate::path_layers::{FirstMet, PathLayers};
+use crate::surface_vertex::SurfaceVertex;
+use crate::way::Way;
 
 /// Throughput below which roulette is played.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
@@ -33,160 +39,352 @@ pub fn trace(scene: &Scene, ray: Ray, random: &mut Random) -> Sample {
 }
 
 /// The same with chosen estimators, which must be [valid](Estimators::validate) for the scene.
-pub fn trace_with(scene: &Scene, estimators: Estimators, mut ray: Ray, random: &mut Random) -> Sample {
-    let mut layers = Layers::default();
-    let mut throughput = DVec3::ONE;
-    // Density with which the ray's direction was drawn from a phase function; none for the camera's own ray.
-    let mut phase_pdf = None;
+pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut Random) -> Sample {
+    let presence = scene.presence_at_camera(ray.origin);
+    let mut layers = PathLayers::<DVec3>::default();
+    let mut path = Path { ray, presence, throughput: DVec3::ONE, refraction: 1.0, turn: None };
+    let mut turns = 0;
     let mut scatterings = 0;
     let shines = scene.volumes.iter().any(|volume| volume.medium.emission_per_length != DVec3::ZERO);
 
     loop {
-        let flight = estimators.fly(scene, &ray, random);
-        if scatterings == 0 || shines {
-            let collision = estimators.analog_collision(scene, &ray, &flight, random);
-            if scatterings == 0 {
-                let albedo =
-                    |(distance, volume): (f64, &Volume)| (distance, volume.albedo_at(ray.at(distance)));
-                layers.first_collision = collision.map(albedo);
+        let may_turn = scene.max_depth.is_none_or(|depth| turns < depth);
+        let way = Way::trace(scene, &path.ray, f64::INFINITY, &path.presence, random);
+        let flight = estimators.fly(scene, &path.ray, &way, random);
+        if turns == 0 || shines {
+            let collision = estimators.analog_collision(scene, &path.ray, &way, &flight, random);
+            if turns == 0 {
+                layers.first = first_met(scene, &path.ray, &way, collision);
             }
-            let end = collision.map_or(f64::INFINITY, |(distance, _)| distance);
-            for volume in scene.volumes.iter().filter(|_| shines) {
-                layers.emission += throughput * emission_along(volume, &ray, end, random);
+            if shines {
+                let end = collision.map_or(way.end, |(distance, _)| distance);
+                layers.emission += path.throughput * path.emission_along(scene, &way, end, random);
             }
         }
         if flight.escape != 0.0 {
-            let escaped = throughput * flight.escape * escaped_radiance(scene, ray.direction, phase_pdf);
-            layers.add_in_scattered(scatterings, escaped);
+            let arriving = match &way.hit {
+                None => path.escaped_radiance(scene),
+                Some(hit) => path.lamp_radiance(scene, hit),
+            };
+            layers.add(scatterings, path.throughput * flight.escape * arriving);
         }
-        let may_scatter = scene.max_depth.is_none_or(|depth| scatterings < depth);
-        let lit_segment = estimators.lit_segment(scene, &ray).filter(|_| may_scatter);
+        let lit_segment = estimators.lit_segment(scene, &path.ray, &way).filter(|_| may_turn);
         if let Some(segment) = &lit_segment {
             let lit = segment.in_scattered(scene, estimators, random);
-            layers.add_in_scattered(scatterings + 1, throughput * lit);
+            layers.add(scatterings + 1, path.throughput * lit);
         }
-        let Some((distance, volume)) = flight.collision else { break };
-        throughput *= flight.weight;
-        let position = ray.at(distance);
-        let medium = &volume.medium;
-        let albedo = volume.albedo_at(position);
 
-        layers.emission += throughput * (DVec3::ONE - albedo) * volume.emission_at(position);
+        match Next::choose(&flight, &way, random) {
+            Next::Nothing => break,
+            Next::Collision { distance, volume: number, weight } => {
+                path.throughput *= weight;
+                let volume = &scene.volumes[number];
+                let position = path.ray.at(distance);
+                let albedo = volume.albedo_at(position);
 
-        if !may_scatter {
-            break;
+                let emitted = (DVec3::ONE - albedo) * volume.emission_at(position);
+                if emitted != DVec3::ZERO {
+                    layers.emission += path.throughput * emitted * path.glow_weight(scene, number, position);
+                }
+
+                if !may_turn {
+                    break;
+                }
+                path.throughput *= albedo;
+                if !path.survives_roulette(random) {
+                    break;
+                }
+                turns += 1;
+                scatterings += 1;
+                path.presence = way.presence_at(scene, path.ray.direction, distance);
+
+                let lit = lit_segment.map(|segment| (segment, distance));
+                let shadow = Shadow { scene, estimators, segment: lit };
+                let phase_function = &volume.medium.phase_function;
+                let before = path.ray.direction;
+                let vertex = Vertex {
+                    position,
+                    value: |toward| {
+                        let phase = phase_function.value(before, toward);
+                        (DVec3::splat(phase), phase)
+                    },
+                    leave: |direction| (Ray { origin: position, direction }, path.presence.clone()),
+                };
+                layers.add(scatterings, path.throughput * shadow.next_event(&vertex, random));
+
+                let onward = phase_function.sample(before, [random.f64(), random.f64()]);
+                let pdf = phase_function.value(before, onward);
+                path.turn = Some(Turn { from: position, pdf, segment: shadow.segment });
+                path.ray = Ray { origin: position, direction: onward };
+            }
+            Next::Surface { hit, weight } => {
+                path.throughput *= weight;
+                let surface = SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb);
+                path.presence = way.presence_at(scene, path.ray.direction, hit.t);
+                if !may_turn {
+                    break;
+                }
+                turns += 1;
+
+                if !surface.is_delta() {
+                    let shadow = Shadow { scene, estimators, segment: None };
+                    let vertex = Vertex {
+                        position: surface.position(),
+                        value: |toward| (surface.value(toward).truncate(), surface.pdf(toward)),
+                        leave: |direction| surface.leave(scene, direction, &path.presence),
+                    };
+                    layers.add(scatterings, path.throughput * shadow.next_event(&vertex, random));
+                }
+
+                let Some(onward) = surface.sample(random) else { break };
+                path.throughput *= onward.weight.truncate();
+                path.refraction *= onward.radiance_scale;
+                if !path.survives_roulette(random) {
+                    break;
+                }
+                path.turn = onward.pdf.map(|pdf| Turn { from: surface.position(), pdf, segment: None });
+                (path.ray, path.presence) = surface.leave(scene, onward.direction, &path.presence);
+            }
         }
-        throughput *= albedo;
-        if !survives_roulette(&mut throughput, random) {
-            break;
-        }
-        scatterings += 1;
-
-        let shadow = Shadow { scene, estimators, segment: lit_segment.map(|segment| (segment, distance)) };
-        let direct = shadow.next_event(position, ray.direction, volume, random);
-        layers.add_in_scattered(scatterings, throughput * direct);
-
-        let onward = medium.phase_function.sample(ray.direction, [random.f64(), random.f64()]);
-        phase_pdf = Some(medium.phase_function.value(ray.direction, onward));
-        ray = Ray { origin: position, direction: onward };
     }
-    layers.into_sample()
+    layers.into_sample(|colour| colour)
 }
 
-/// Lo: radiance of the infinite lights in `direction`, each weighted against next-event estimation having drawn it.
-fn escaped_radiance(scene: &Scene, direction: DVec3, phase_pdf: Option<f64>) -> DVec3 {
-    scene
-        .lights
-        .iter()
-        .zip(&scene.light_probabilities)
-        .map(|(light, probability)| {
-            let weight = match phase_pdf {
-                Some(phase_pdf) => phase_pdf / (phase_pdf + probability * light.pdf(direction)),
-                None => 1.0,
-            };
-            light.radiance(direction) * weight
-        })
-        .sum()
+/// What a camera ray meets first.
+fn first_met(scene: &Scene, ray: &Ray, way: &Way, collision: Option<(f64, usize)>) -> Option<FirstMet> {
+    if let Some((distance, volume)) = collision {
+        let albedo = scene.volumes[volume].albedo_at(ray.at(distance));
+        return Some(FirstMet { distance, albedo, ..FirstMet::default() });
+    }
+    let surface = SurfaceVertex::new(scene, &way.hit?, ray.direction, &Channels::Rgb);
+    Some(surface.first_met(scene, surface.albedo().truncate()))
 }
 
-/// What next-event estimation at a collision has to know.
+/// Where a path last turned, and the density with which it did so into its direction.
+struct Turn<'a> {
+    from: DVec3,
+    pdf: f64,
+    /// The stretch of the path up to there, and its distance, if lights are sampled along it as well.
+    segment: Option<(LitSegment<'a>, f64)>,
+}
+
+/// A path under way.
+struct Path<'a> {
+    ray: Ray,
+    /// The volumes that are present where the ray begins.
+    presence: Presence,
+    throughput: DVec3,
+    /// The part of the throughput that is due to refraction, which roulette leaves out.
+    refraction: f64,
+    /// None for the camera's own ray and after a mirror: nothing else finds what it finds.
+    turn: Option<Turn<'a>>,
+}
+
+impl Path<'_> {
+    /// Lo of the surroundings: radiance of the infinite lights, each weighted against next-event estimation having drawn it.
+    fn escaped_radiance(&self, scene: &Scene) -> DVec3 {
+        let lights = scene.lights.iter().enumerate();
+        lights
+            .map(|(number, light)| {
+                let radiance = light.radiance(self.ray.direction);
+                if radiance == DVec3::ZERO {
+                    return DVec3::ZERO;
+                }
+                radiance * self.weight_against(scene, number, |_| light.pdf(self.ray.direction))
+            })
+            .sum()
+    }
+
+    /// Le of a surface that is a lamp, weighted likewise.
+    fn lamp_radiance(&self, scene: &Scene, hit: &Hit) -> DVec3 {
+        let Some(number) = scene.surfaces.shape(hit).light else { return DVec3::ZERO };
+        let Light::Area(lamp) = &scene.lights[number] else { return DVec3::ZERO };
+        let direction = self.ray.direction;
+        let radiance = lamp.radiance_from(hit.normal, direction);
+        if let Some(Turn { from, pdf, segment: Some((segment, distance)) }) = &self.turn {
+            let cos = direction.dot(hit.normal).abs();
+            let light_pdf = hit.position.distance_squared(*from) / (cos * lamp.area());
+            let found = Found { light: number, place: hit.position, place_pdf: light_pdf, path_pdf: *pdf };
+            return radiance * segment.path_weight(scene, &found, *distance);
+        }
+        radiance
+            * self.weight_against(scene, number, |from| {
+                lamp.pdf_of_hit(from, direction, hit.position, hit.normal)
+            })
+    }
+
+    /// Balance heuristic: weight of this path against next-event estimation, which draws the same direction from where the
+    /// path turned with the density `pdf` if it draws the light of this number.
+    fn weight_against(&self, scene: &Scene, light: usize, pdf: impl Fn(DVec3) -> f64) -> f64 {
+        match &self.turn {
+            Some(turn) => turn.pdf / (turn.pdf + scene.light_probability(light, turn.from) * pdf(turn.from)),
+            None => 1.0,
+        }
+    }
+
+    /// Light that volumes send out per length, up to the distance `end`.
+    fn emission_along(&self, scene: &Scene, way: &Way, end: f64, random: &mut Random) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for span in way.spans.iter().filter(|span| span.start < end) {
+            let volume = &scene.volumes[span.volume];
+            let weight = |t: f64| self.glow_weight(scene, span.volume, self.ray.at(t));
+            let is_light = self.turn.is_some() && scene.light_of_volume(span.volume).is_some();
+            let weight: Option<&dyn Fn(f64) -> f64> = if is_light { Some(&weight) } else { None };
+            let range = (span.start, span.end.min(end));
+            sum += weighted_emission_along(volume, &self.ray, range, weight, random);
+        }
+        sum
+    }
+
+    /// Weight of the glow of a volume at `position`, found by this path, against next-event estimation.
+    fn glow_weight(&self, scene: &Scene, volume: usize, position: DVec3) -> f64 {
+        match &self.turn {
+            Some(turn) => crate::emission::path_weight(scene, volume, turn.from, position, turn.pdf),
+            None => 1.0,
+        }
+    }
+
+    /// Ends a weak path with a probability that its survivors' weight makes up for.
+    fn survives_roulette(&mut self, random: &mut Random) -> bool {
+        let strength = self.throughput.abs().max_element() / self.refraction;
+        if strength >= ROULETTE_THROUGHPUT {
+            return true;
+        }
+        let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
+        if random.f64() >= probability {
+            return false;
+        }
+        self.throughput /= probability;
+        true
+    }
+}
+
+/// What a path does after a flight.
+enum Next {
+    Nothing,
+    Collision { distance: f64, volume: usize, weight: f64 },
+    Surface { hit: Hit, weight: f64 },
+}
+
+impl Next {
+    fn choose(flight: &SceneFlight, way: &Way, random: &mut Random) -> Next {
+        match (flight.collision, way.hit.filter(|_| flight.escape != 0.0)) {
+            (None, None) => Next::Nothing,
+            (Some((distance, volume)), None) => Next::Collision { distance, volume, weight: flight.weight },
+            (None, Some(hit)) => Next::Surface { hit, weight: flight.escape },
+            (Some((distance, volume)), Some(hit)) => {
+                let [collides, escapes] = [flight.weight.abs(), flight.escape.abs()];
+                let probability = collides / (collides + escapes);
+                if random.f64() < probability {
+                    Next::Collision { distance, volume, weight: flight.weight / probability }
+                } else {
+                    Next::Surface { hit, weight: flight.escape / (1.0 - probability) }
+                }
+            }
+        }
+    }
+}
+
+/// A place where a path turns, as next-event estimation sees it.
+struct Vertex<V, L> {
+    position: DVec3,
+    /// Of a direction: the phase function or f |cos θ|, and the density with which the path goes on there.
+    value: V,
+    /// The ray in a direction, and the volumes that are present where it begins.
+    leave: L,
+}
+
+/// What next-event estimation has to know.
 struct Shadow<'a> {
     scene: &'a Scene,
     estimators: Estimators,
-    /// The stretch of the path up to the collision, and its distance, if point lights are sampled along it as well.
+    /// The stretch of the path up to the collision, and its distance, if lights are sampled along it as well.
     segment: Option<(LitSegment<'a>, f64)>,
 }
 
 impl Shadow<'_> {
-    /// Next-event estimation of ∫ f_p L dω over the light that arrives unscattered at `position`.
-    fn next_event(&self, position: DVec3, before: DVec3, volume: &Volume, random: &mut Random) -> DVec3 {
-        let Some((number, probability)) = self.scene.choose_light(position, random.f64()) else {
+    /// Next-event estimation of ∫ f L dω over the light that arrives unscattered at the vertex.
+    fn next_event<V, L>(&self, vertex: &Vertex<V, L>, random: &mut Random) -> DVec3
+    where
+        V: Fn(DVec3) -> (DVec3, f64),
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
+        let Some((number, probability)) = self.scene.choose_light(vertex.position, random.f64()) else {
             return DVec3::ZERO;
         };
         let light = &self.scene.lights[number];
-        let sample = light.sample(position, [random.f64(), random.f64()]);
-        let phase = volume.medium.phase_function.value(before, sample.toward);
-        let light_pdf = probability * sample.pdf;
-        let weight = match (light, &self.segment) {
-            (Light::Point(light), Some((segment, distance))) => segment.collision_weight(light, *distance),
-            _ if sample.is_delta => 1.0,
-            _ => light_pdf / (light_pdf + phase),
+        if let Light::Volume(_) = light {
+            return self.glow(vertex, number, probability, random);
+        }
+        let u = [random.f64(), random.f64()];
+        let segment = self.segment.as_ref().filter(|_| LitSegment::samples(light));
+        let sample = match segment {
+            Some(_) => LitSegment::sample(light, vertex.position, u),
+            None => light.sample(vertex.position, u),
         };
-        let unshadowed = sample.radiance_over_pdf * (phase * weight / probability);
+        if sample.radiance_over_pdf == DVec3::ZERO {
+            return DVec3::ZERO;
+        }
+        let (value, path_pdf) = (vertex.value)(sample.toward);
+        let weight = match segment {
+            Some((segment, distance)) => {
+                let place = vertex.position + sample.toward * sample.distance;
+                let (place_pdf, path_pdf) = if sample.is_delta { (1.0, 0.0) } else { (sample.pdf, path_pdf) };
+                let found = Found { light: number, place, place_pdf, path_pdf };
+                segment.collision_weight(self.scene, &found, *distance)
+            }
+            None if sample.is_delta => 1.0,
+            None => {
+                let light_pdf = probability * sample.pdf;
+                light_pdf / (light_pdf + path_pdf)
+            }
+        };
+        let unshadowed = value * sample.radiance_over_pdf * (weight / probability);
+        self.shadowed(vertex, unshadowed, sample.toward, sample.distance, random)
+    }
+
+    /// The same for a volume that glows: ∫ f T j/d² dV over its source j.
+    fn glow<V, L>(&self, vertex: &Vertex<V, L>, number: usize, probability: f64, random: &mut Random) -> DVec3
+    where
+        V: Fn(DVec3) -> (DVec3, f64),
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
+        let Light::Volume(light) = &self.scene.lights[number] else { return DVec3::ZERO };
+        let sample = light.sample(vertex.position, [random.f64(), random.f64(), random.f64()]);
+        let offset = sample.position - vertex.position;
+        let distance = offset.length();
+        if distance == 0.0 || sample.pdf_volume <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let volume = light.volume();
+        let toward = offset / distance;
+        let (value, path_pdf) = (vertex.value)(toward);
+        let weight = 1.0
+            - crate::emission::path_weight(self.scene, volume, vertex.position, sample.position, path_pdf);
+        let source = crate::emission::source_at(&self.scene.volumes[volume], sample.position, toward);
+        let unshadowed = value * source * (weight / (distance * distance * sample.pdf_volume * probability));
+        self.shadowed(vertex, unshadowed, toward, distance, random)
+    }
+
+    /// What of the light of a shadow ray gets through.
+    fn shadowed<V, L>(
+        &self,
+        vertex: &Vertex<V, L>,
+        unshadowed: DVec3,
+        toward: DVec3,
+        distance: f64,
+        random: &mut Random,
+    ) -> DVec3
+    where
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
         if unshadowed == DVec3::ZERO {
             return DVec3::ZERO;
         }
-        let shadow_ray = Ray { origin: position, direction: sample.toward };
-        unshadowed * self.estimators.transmittance(self.scene, &shadow_ray, sample.distance, random)
-    }
-}
-
-/// Ends a weak path with a probability that its survivors' weight makes up for.
-fn survives_roulette(throughput: &mut DVec3, random: &mut Random) -> bool {
-    let strength = throughput.abs().max_element();
-    if strength >= ROULETTE_THROUGHPUT {
-        return true;
-    }
-    let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
-    if random.f64() >= probability {
-        return false;
-    }
-    *throughput /= probability;
-    true
-}
-
-/// The path's contributions by what made them.
-#[derive(Default)]
-struct Layers {
-    background: DVec3,
-    emission: DVec3,
-    single: DVec3,
-    multiple: DVec3,
-    /// Distance and albedo of the camera ray's first collision.
-    first_collision: Option<(f64, DVec3)>,
-}
-
-impl Layers {
-    fn add_in_scattered(&mut self, scatterings: u32, radiance: DVec3) {
-        match scatterings {
-            0 => self.background += radiance,
-            1 => self.single += radiance,
-            _ => self.multiple += radiance,
-        }
-    }
-
-    fn into_sample(self) -> Sample {
-        let radiance = self.background + self.emission + self.single + self.multiple;
-        let (depth, albedo) = self.first_collision.unwrap_or_default();
-        Sample {
-            radiance: radiance.as_vec3().to_array(),
-            hit: self.first_collision.is_some(),
-            depth: depth as f32,
-            albedo: albedo.as_vec3().to_array(),
-            emission: self.emission.as_vec3().to_array(),
-            single: self.single.as_vec3().to_array(),
-            multiple: self.multiple.as_vec3().to_array(),
-            ..Sample::default()
-        }
+        let (ray, presence) = (vertex.leave)(toward);
+        let Some(way) = Way::connect(self.scene, &ray, distance, &presence, random) else {
+            return DVec3::ZERO;
+        };
+        unshadowed * self.estimators.transmittance(self.scene, &ray, &way, random)
     }
 }

@@ -116,7 +116,7 @@ fn optical_thickness(volume: &Volume, [min, max]: [DVec3; 2]) -> OpticalThicknes
 
 /// ∫ density along a local ray from 0 to `end`.
 fn density_integral(volume: &Volume, ray: &Ray, end: f64) -> f64 {
-    let Some((enter, leave)) = volume.interval(ray, end) else { return 0.0 };
+    let Some((enter, leave)) = volume.interval(ray, (0.0, end)) else { return 0.0 };
     let Density::Grid(bricks) = &volume.density else {
         return volume.density_integral(ray, (enter, leave)).unwrap_or(0.0);
     };

@@ -23,6 +23,7 @@ mod quantity;
 mod rgb;
 mod rules;
 mod shape;
+mod shape_rules;
 mod spectrum;
 mod spheres;
 mod transform;
@@ -56,6 +57,7 @@ pub use shape::{
     CylinderShape, DiscShape, MeshShape, Names, PlaneShape, RectangleShape, ShapeDescription, ShapeGeometry,
     SurfaceEmission,
 };
+pub(crate) use shape_rules::unknown_name;
 pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
 pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};

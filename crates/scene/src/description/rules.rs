@@ -3,10 +3,11 @@
 use glam::DVec3;
 
 use super::meter_rules::meters;
+use super::shape_rules::shapes;
 use super::{
     CameraDescription, ColourMode, FilmOutput, LightDescription, MediumDescription, PhaseDescription,
-    SceneDescription, SkyDescription, SpectrumDescription, TransformDescription, VolumeDescription,
-    VolumeSource,
+    Projection, SceneDescription, SkyDescription, SpectrumDescription, TransformDescription,
+    VolumeDescription, VolumeSource,
 };
 
 /// A key whose value contradicts the rest of the scene.
@@ -39,6 +40,7 @@ impl SceneDescription {
             found
                 .within("light", |found| found.within(&index.to_string(), |found| light(found, description)));
         }
+        shapes(&mut found, self);
         meters(&mut found, &self.meters);
         found.violations
     }
@@ -74,6 +76,21 @@ impl Findings {
 
 fn camera(found: &mut Findings, camera: &CameraDescription) {
     found.report_zero("up", camera.up);
+    if let Some([left, right, bottom, top]) = camera.window
+        && (left == right || bottom == top)
+    {
+        found.report("window", "`window` is empty: left and right, bottom and top must differ");
+    }
+    let is_orthographic = camera.projection == Projection::Orthographic;
+    if !is_orthographic && camera.height.is_some() {
+        found.report("height", "`height` is for `projection = \"orthographic\"`: give `vertical_fov`");
+    }
+    if is_orthographic && camera.height.is_none() && camera.window.is_none() {
+        found.report("", "an orthographic camera needs `height`, the height of what it sees in scene units");
+    }
+    if is_orthographic && camera.aperture_radius > 0.0 {
+        found.report("aperture_radius", "parallel rays have no lens: remove `aperture_radius`");
+    }
     let view = match (camera.target, camera.direction) {
         (Some(_), Some(_)) => {
             return found.report("direction", "the camera has both `target` and `direction`: keep one");
@@ -103,6 +120,18 @@ fn camera(found: &mut Findings, camera: &CameraDescription) {
 }
 
 fn film(found: &mut Findings, scene: &SceneDescription) {
+    if let Some([left, top, width, height]) = scene.film.crop {
+        let reaches = |start: u32, length: u32, all: u32| {
+            length > 0 && u64::from(start) + u64::from(length) <= u64::from(all)
+        };
+        let [columns, rows] = scene.film.resolution;
+        if !reaches(left, width, columns) || !reaches(top, height, rows) {
+            let message = format!(
+                "`crop` is no part of the {columns}x{rows} pixels: it is left column, top row, width, height"
+            );
+            found.within("film", |found| found.report("crop", message));
+        }
+    }
     let mut needs_spectral = |key: &str, is_given: bool| {
         if is_given && scene.render.mode != ColourMode::Spectral {
             let message =
@@ -153,7 +182,7 @@ fn fills_all_space(found: &mut Findings, medium: &MediumDescription, unit: &str)
     }
 }
 
-fn light_spectrum(found: &mut Findings, key: &'static str, spectrum: &SpectrumDescription) {
+pub(super) fn light_spectrum(found: &mut Findings, key: &'static str, spectrum: &SpectrumDescription) {
     if let Err((inner, message)) = spectrum.light() {
         report_at(found, &[key, inner], format!("`{key}`: {message}"));
     }
@@ -172,7 +201,7 @@ fn volume(found: &mut Findings, volume: &VolumeDescription, unit: &str) {
     medium_rules(found, &volume.medium, unit);
     fields(found, volume);
     if let Some(transform) = &volume.transform {
-        found.within("transform", |found| transform_is_invertible(found, transform));
+        found.within("transform", |found| transform_is_invertible(found, transform, "volume"));
     }
     let source = match volume.source() {
         Ok(source) => source,
@@ -238,7 +267,7 @@ fn fields(found: &mut Findings, volume: &VolumeDescription) {
     }
 }
 
-fn transform_is_invertible(found: &mut Findings, transform: &TransformDescription) {
+pub(super) fn transform_is_invertible(found: &mut Findings, transform: &TransformDescription, what: &str) {
     if let Some(matrix) = transform.matrix {
         if transform.scale.is_some() || transform.rotate.is_some() || transform.translate.is_some() {
             found.report("matrix", "`matrix` replaces `scale`, `rotate` and `translate`: keep it or them");
@@ -252,7 +281,7 @@ fn transform_is_invertible(found: &mut Findings, transform: &TransformDescriptio
     let determinant = transform.to_affine().matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() {
         let key = if transform.matrix.is_some() { "matrix" } else { "scale" };
-        found.report(key, format!("`{key}` makes the volume flat: no factor may be 0"));
+        found.report(key, format!("`{key}` makes the {what} flat: no factor may be 0"));
     }
 }
 

@@ -100,21 +100,30 @@ impl AreaLight {
                 let normal = self.primitives[0].flat_normal().unwrap_or(DVec3::ZERO);
                 found(from, toward, distance, self.radiance_from(normal, toward), rectangle.pdf())
             }
-            View::Area(area) => {
-                let point = self.uniform_point(area, u);
-                let offset = point.position - from;
-                let distance = offset.length();
-                let toward = offset / distance;
-                let cos = toward.dot(point.normal).abs();
-                let pdf = distance * distance / (cos * area);
-                let is_seen = cos > 0.0 && pdf > 0.0 && pdf.is_finite();
-                // Edge on, or at the lamp itself, nothing comes from there.
-                if !is_seen {
-                    return LightSample::NONE;
-                }
-                found(from, toward, distance, self.radiance_from(point.normal, toward), pdf)
-            }
+            View::Area(area) => self.see(from, &self.uniform_point(area, u)),
         }
+    }
+
+    /// A point of the lamp, uniform by area; none of a lamp that cannot be sampled.
+    pub fn point(&self, u: [f64; 2]) -> Option<SurfacePoint> {
+        let area = self.area();
+        (area > 0.0).then(|| self.uniform_point(area, u))
+    }
+
+    /// The light of a [`point`](Self::point) as it arrives at `from`: as a sample whose density is that of points uniform by
+    /// area.
+    pub fn see(&self, from: DVec3, point: &SurfacePoint) -> LightSample {
+        let offset = point.position - from;
+        let distance = offset.length();
+        let toward = offset / distance;
+        let cos = toward.dot(point.normal).abs();
+        let pdf = distance * distance / (cos * self.area());
+        let is_seen = cos > 0.0 && pdf > 0.0 && pdf.is_finite();
+        // Edge on, or at the lamp itself, nothing comes from there.
+        if !is_seen {
+            return LightSample::NONE;
+        }
+        found(from, toward, distance, self.radiance_from(point.normal, toward), pdf)
     }
 
     /// Power in all directions, π L A from each side that shines.

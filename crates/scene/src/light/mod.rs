@@ -18,6 +18,7 @@ mod spherical_rectangle;
 mod spot;
 mod sun;
 mod texel_distribution;
+mod volume_light;
 
 use glam::DVec3;
 
@@ -31,6 +32,7 @@ pub use self::image_file::read_light_image;
 pub use self::point::PointLight;
 pub use self::spot::SpotLight;
 pub use self::sun::SunLight;
+pub use self::volume_light::{VolumeLight, VolumeLightSample};
 
 /// A light. The clear sky is an image and, if it shines, a sun.
 #[derive(Debug, Clone)]
@@ -49,6 +51,8 @@ pub enum Light {
     Spot(SpotLight),
     /// A surface that shines.
     Area(AreaLight),
+    /// A volume that glows.
+    Volume(VolumeLight),
 }
 
 /// A direction in which a light was found.
@@ -83,6 +87,7 @@ impl Light {
             Self::Point(light) => light.sample(from),
             Self::Spot(light) => light.sample(from),
             Self::Area(light) => light.sample(from, u),
+            Self::Volume(_) => LightSample::NONE,
         }
     }
 
@@ -93,7 +98,9 @@ impl Light {
             Self::Constant(light) => light.radiance(),
             Self::Image(light) => light.radiance(direction),
             Self::Sun(light) => light.radiance(direction),
-            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) => DVec3::ZERO,
+            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) | Self::Volume(_) => {
+                DVec3::ZERO
+            }
         }
     }
 
@@ -104,7 +111,7 @@ impl Light {
             Self::Constant(light) => light.pdf(),
             Self::Image(light) => light.pdf(direction),
             Self::Sun(light) => light.pdf(direction),
-            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) => 0.0,
+            Self::Distant(_) | Self::Point(_) | Self::Spot(_) | Self::Area(_) | Self::Volume(_) => 0.0,
         }
     }
 
@@ -120,6 +127,7 @@ impl Light {
             Self::Point(light) => mean(light.power()),
             Self::Spot(light) => mean(light.power()),
             Self::Area(light) => mean(light.power()),
+            Self::Volume(_) => 0.0,
         }
     }
 

@@ -1,10 +1,29 @@
 //! Surfaces ready to trace: where rays meet them, what they are made of, and which volumes they bound.
 
+mod boundaries;
+mod build;
+mod bvh;
+mod closed;
+mod cuboid;
+mod cylinder;
+mod disc;
+mod local;
 mod material;
 mod mesh;
+mod pieces;
+mod placed;
+mod sphere;
+mod square;
+mod triangle;
+mod triangle_mesh;
 mod world_primitive;
 
 use glam::DVec3;
+
+pub use self::boundaries::{Boundaries, Presence};
+pub(crate) use self::build::{VolumeNumber, build_surfaces, numbers_of};
+use self::bvh::Bvh;
+use self::placed::Placed;
 
 pub use self::material::Material;
 pub use self::mesh::{Mesh, read_mesh, write_ply};
@@ -18,6 +37,13 @@ pub struct Surfaces {
     pub shapes: Vec<Shape>,
     /// What they are made of.
     pub materials: Vec<Material>,
+    /// Where the shapes are.
+    placed: Vec<Placed>,
+    /// Numbers of the shapes that have an end, and a tree over them.
+    bounded: Vec<usize>,
+    tree: Bvh,
+    /// Numbers of the infinite planes.
+    planes: Vec<usize>,
 }
 
 /// One `[[shape]]`, or one of its instances.
@@ -70,8 +96,31 @@ impl Surfaces {
 
     /// The nearest surface along `ray`, of unit direction, before the distance `end`.
     pub fn intersect(&self, ray: &Ray, end: f64) -> Option<Hit> {
-        let _ = (ray, end);
-        None
+        let (mut nearest, mut end) = (None, end);
+        for &shape in &self.planes {
+            if let Some(hit) = self.placed[shape].intersect(ray, end) {
+                end = hit.t;
+                nearest = Some((shape, hit));
+            }
+        }
+        self.tree.traverse(ray, end, |item, end| {
+            let shape = self.bounded[item as usize];
+            let Some(hit) = self.placed[shape].intersect(ray, end) else { return end };
+            nearest = Some((shape, hit));
+            hit.t
+        });
+        nearest.map(|(shape, hit)| self.placed[shape].hit(ray, &hit, shape))
+    }
+
+    /// A box around all surfaces that have an end; `None` if there is none.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        self.tree.bounds()
+    }
+
+    /// The pieces of a shape in world space, in the order of [`Hit::primitive`]; `None` for an infinite plane, and for a
+    /// sphere, disc or cylinder that its transform has deformed.
+    pub fn world_primitives(&self, shape: usize) -> Option<Vec<WorldPrimitive>> {
+        pieces::world_primitives(&self.placed[shape])
     }
 
     /// The shape that a hit is on.

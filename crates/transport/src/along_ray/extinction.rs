@@ -36,15 +36,15 @@ pub(super) enum Extinction<'a> {
         grid: &'a BrickGrid,
         mu_t: f64,
         local: Ray,
-        /// Distance at which the ray ends.
-        limit: f64,
+        /// Distances between which the ray is looked at.
+        limits: (f64, f64),
     },
 }
 
 impl<'a> Stretch<'a> {
-    pub fn through(volume: &'a Volume, ray: &Ray, end: f64) -> Option<Self> {
+    pub fn through(volume: &'a Volume, ray: &Ray, limits: (f64, f64)) -> Option<Self> {
         let local = volume.local_ray(ray);
-        let range = volume.interval(&local, end)?;
+        let range = volume.interval(&local, limits)?;
         let mu_t = volume.medium.mu_t_along(ray.direction);
         if mu_t <= 0.0 {
             return None;
@@ -54,7 +54,7 @@ impl<'a> Stretch<'a> {
                 start: range.0,
                 end: range.1,
                 source: 0,
-                extinction: Extinction::Grid { grid, mu_t, local, limit: end },
+                extinction: Extinction::Grid { grid, mu_t, local, limits },
                 pieces: 1,
             }),
             Density::Everywhere | Density::Box { .. } | Density::Sphere | Density::Slab { .. } => {
@@ -110,8 +110,8 @@ impl<'a> Stretch<'a> {
                     visit(Cell { start, end, min, max })
                 })
             }
-            Extinction::Grid { grid, mu_t, local, limit } => {
-                grid.segments(local.origin, local.direction, (0.0, *limit), |segment| {
+            Extinction::Grid { grid, mu_t, local, limits } => {
+                grid.segments(local.origin, local.direction, *limits, |segment| {
                     let (min, max) = (f64::from(segment.bounds.min), f64::from(segment.bounds.max));
                     visit(Cell {
                         start: segment.start,

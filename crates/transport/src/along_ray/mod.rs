@@ -21,6 +21,8 @@ use std::ops::ControlFlow;
 
 use tyndall_scene::{Ray, Volume};
 
+use crate::way::Span;
+
 pub use bounding::{Bounding, Control, Extent, Piece};
 pub use profile::Profile;
 pub(crate) use tentative::tentative_collisions;
@@ -67,14 +69,24 @@ impl<'a> AlongRay<'a> {
         let mut stretches = volumes
             .iter()
             .enumerate()
-            .filter_map(|(source, volume)| Stretch::through(volume, ray, end).map(|s| s.of(source)));
+            .filter_map(|(source, volume)| Stretch::through(volume, ray, (0.0, end)).map(|s| s.of(source)));
         let first = stretches.next()?;
         Some(Self { first, others: stretches.collect(), bounding: Bounding::default(), light: None })
     }
 
-    /// What `ray` meets of one volume.
-    pub(crate) fn through_one(volume: &'a Volume, ray: &Ray, end: f64) -> Option<Self> {
-        Some(Self::of(Stretch::through(volume, ray, end)?))
+    /// What `ray` meets of the volumes where they are present.
+    pub(crate) fn through_spans(volumes: &'a [Volume], spans: &[Span], ray: &Ray) -> Option<Self> {
+        let mut stretches = spans.iter().filter_map(|span| {
+            let stretch = Stretch::through(&volumes[span.volume], ray, (span.start, span.end));
+            stretch.map(|stretch| stretch.of(span.volume))
+        });
+        let first = stretches.next()?;
+        Some(Self { first, others: stretches.collect(), bounding: Bounding::default(), light: None })
+    }
+
+    /// What `ray` meets of one volume between the two distances of `range`.
+    pub(crate) fn through_one(volume: &'a Volume, ray: &Ray, range: (f64, f64)) -> Option<Self> {
+        Some(Self::of(Stretch::through(volume, ray, range)?))
     }
 
     /// A formula for the extinction from 0 to `length`, with bounds over `pieces` equal parts; for experiments.

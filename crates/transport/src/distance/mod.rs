@@ -153,10 +153,10 @@ impl DistanceSampler {
     }
 }
 
-/// The distance of the first collision with `volume` along `ray` before `end`, if there is one; by what is best as a
-/// rule: the closed form where there is one, else delta tracking.
-pub fn sample_distance(volume: &Volume, ray: &Ray, end: f64, random: &mut Random) -> Option<f64> {
-    let ray = AlongRay::through_one(volume, ray, end)?;
+/// The distance of the first collision with `volume` along `ray` between the two distances of `range`, if there is one; by
+/// what is best as a rule: the closed form where there is one, else delta tracking.
+pub fn sample_distance(volume: &Volume, ray: &Ray, range: (f64, f64), random: &mut Random) -> Option<f64> {
+    let ray = AlongRay::through_one(volume, ray, range)?;
     let sampler = match volume.density {
         Density::Grid(_) => DistanceSampler::DeltaTracking,
         _ => DistanceSampler::ClosedForm,

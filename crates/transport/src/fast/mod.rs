@@ -12,15 +12,19 @@
 
 mod march;
 mod pool;
+mod sided;
 mod volume;
 
 pub(crate) use volume::FastScene;
 use volume::FastVolume;
 
-use crate::emission::emission_along;
-use glam::Vec3;
+use crate::emission::{path_weight, weighted_emission_along};
+use crate::path_layers::FirstMet;
+use crate::way::Span;
+use glam::{DVec3, Vec3};
 use march::List;
 use pool::{POOL, Path, Pixel, Rays};
+use sided::{Direct, Sided, draw_light, lamp_radiance};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
@@ -67,6 +71,8 @@ struct Engine<'a> {
     film_width: u64,
     rays: Box<Rays>,
     paths: Vec<Path>,
+    /// What surfaces need of each path, if there are any.
+    sided: Vec<Sided>,
     work: Work,
     active: usize,
 }
@@ -97,6 +103,7 @@ impl<'a> Engine<'a> {
             film_width: u64::from(scene.scene.resolution[0]),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
+            sided: if scene.is_sided { vec![Sided::new(); POOL] } else { Vec::new() },
             work: Work::default(),
             active: 0,
         }
@@ -115,7 +122,7 @@ impl<'a> Engine<'a> {
             march::collide(&mut self.rays, &self.scene.volumes, &tentative, &mut happened);
             for &slot in left.slots() {
                 let slot = usize::from(slot);
-                let next = Next::Enter(self.rays.volume[slot] as usize + 1);
+                let next = Next::Enter(self.paths[slot].place as usize + 1);
                 self.proceed(slot, next);
             }
             for &slot in happened.slots() {
@@ -125,7 +132,7 @@ impl<'a> Engine<'a> {
                 } else {
                     let volume = self.rays.volume[slot];
                     self.paths[slot].nearest = Some((volume, self.rays.t[slot]));
-                    Next::Enter(volume as usize + 1)
+                    Next::Enter(self.paths[slot].place as usize + 1)
                 };
                 self.proceed(slot, next);
             }
@@ -153,7 +160,8 @@ impl<'a> Engine<'a> {
                 },
                 Next::Fly => {
                     self.paths[slot].nearest = None;
-                    self.begin_ray(slot, false, f32::INFINITY)
+                    let end = if self.scene.is_sided { self.look_ahead(slot) } else { f32::INFINITY };
+                    self.begin_ray(slot, false, end)
                 }
                 Next::LookAtLight => {
                     let distance = self.paths[slot].light_distance;
@@ -165,7 +173,7 @@ impl<'a> Engine<'a> {
                 },
                 Next::Finish if self.rays.shadow[slot] > 0.0 => {
                     self.add_direct(slot);
-                    Next::Fly
+                    if self.paths[slot].throughput == Vec3::ZERO { Next::Record } else { Next::Fly }
                 }
                 Next::Finish => {
                     if self.scene.shines {
@@ -173,6 +181,7 @@ impl<'a> Engine<'a> {
                     }
                     match self.paths[slot].nearest {
                         Some((volume, distance)) => self.scatter(slot, volume as usize, distance),
+                        None if self.scene.is_sided => self.arrive(slot),
                         None => self.escape(slot),
                     }
                 }
@@ -199,6 +208,11 @@ impl<'a> Engine<'a> {
             throughput: Vec3::ONE,
             ..Path::default()
         };
+        if self.scene.is_sided {
+            let sided = &mut self.sided[slot];
+            sided.presence = self.scene.scene.presence_at_camera(ray.origin);
+            (sided.ray, sided.refraction) = (ray, 1.0);
+        }
         Next::Fly
     }
 
@@ -211,21 +225,38 @@ impl<'a> Engine<'a> {
         Next::Enter(0)
     }
 
-    /// Puts the ray at the start of the first grid in its way, from volume number `first` on, and settles the
-    /// volumes with a closed form before it; `false` if there is no grid left.
+    /// Finds the surface at which the path's ray ends; its distance.
+    #[inline(never)]
+    fn look_ahead(&mut self, slot: usize) -> f32 {
+        self.sided[slot].look_ahead(self.scene.scene, &mut self.rays.random[slot]);
+        self.sided[slot].way.end as f32
+    }
+
+    /// Puts the ray at the start of the first grid in its way, from span number `first` on (without surfaces every volume
+    /// is one span), and settles the volumes with a closed form before it; `false` if there is no grid left.
     #[inline(always)]
     fn enter(&mut self, slot: usize, first: usize) -> bool {
         let shadow = self.rays.shadow[slot] > 0.0;
         let path = &mut self.paths[slot];
         let direction = if shadow { path.shadow_direction } else { path.direction };
-        for (number, volume) in self.scene.volumes.iter().enumerate().skip(first) {
+        let spans = if self.scene.is_sided { Some(self.sided[slot].spans(shadow)) } else { None };
+        let count = spans.map_or(self.scene.volumes.len(), <[Span]>::len);
+        for place in first..count {
             let end = path.nearest.map_or(path.ray_end, |(_, distance)| distance);
             let end = if shadow { path.ray_end } else { end };
+            let (number, begin, end) = match spans.map(|spans| spans[place]) {
+                Some(span) => (span.volume, span.start as f32, end.min(span.end as f32)),
+                None => (place, 0.0, end),
+            };
+            let volume = &self.scene.volumes[number];
             let mu_t = volume.mu_t * volume.phase.projected_area(direction);
             match &volume.kind {
                 Kind::ClosedForm(closed) => {
                     let local = closed.local_ray(&self.scene.world_ray(path.position, direction));
-                    let Some((enter, leave)) = closed.interval(&local, f64::from(end)) else { continue };
+                    let Some((enter, leave)) = closed.interval(&local, (f64::from(begin), f64::from(end)))
+                    else {
+                        continue;
+                    };
                     let mu_t = f64::from(mu_t);
                     if shadow {
                         let integral = closed.density_integral(&local, (enter, leave)).unwrap_or(0.0);
@@ -244,7 +275,7 @@ impl<'a> Engine<'a> {
                     let inverse = direction.recip();
                     let a = (grid.min - origin) * inverse;
                     let b = (grid.max - origin) * inverse;
-                    let enter = a.min(b).max_element().max(0.0);
+                    let enter = a.min(b).max_element().max(begin);
                     let leave = a.max(b).min_element().min(end);
                     if enter >= leave || mu_t <= 0.0 {
                         continue;
@@ -261,6 +292,7 @@ impl<'a> Engine<'a> {
                     rays.nudge[slot] = nudge / direction.abs().max_element();
                     rays.mu_t[slot] = mu_t;
                     rays.volume[slot] = number as u32;
+                    path.place = place as u32;
                     rays.tau[slot] = rays.random[slot].exponential();
                     return true;
                 }
@@ -273,18 +305,36 @@ impl<'a> Engine<'a> {
     #[cold]
     fn gather(&mut self, slot: usize) {
         let path = &mut self.paths[slot];
+        let scene = self.scene.scene;
         let ray = self.scene.world_ray(path.position, path.direction);
-        let end = path.nearest.map_or(f64::INFINITY, |(_, distance)| f64::from(distance));
-        for volume in self.scene.volumes.iter().filter_map(|volume| volume.shines) {
-            let emission = emission_along(volume, &ray, end, &mut self.rays.random[slot]);
+        let end = path.nearest.map_or(f64::from(path.ray_end), |(_, distance)| f64::from(distance));
+        let everywhere: Vec<Span>;
+        let spans = if self.scene.is_sided {
+            self.sided[slot].spans(false)
+        } else {
+            let volumes = 0..self.scene.volumes.len();
+            everywhere = volumes.map(|volume| Span { volume, start: 0.0, end: f64::INFINITY }).collect();
+            &everywhere
+        };
+        for span in spans.iter().filter(|span| span.start < end) {
+            let Some(volume) = self.scene.volumes[span.volume].shines else { continue };
+            let turned = path.turned.filter(|_| scene.light_of_volume(span.volume).is_some());
+            let weight = turned.map(|from| {
+                let pdf = f64::from(path.turn_pdf);
+                move |t: f64| path_weight(scene, span.volume, from, ray.at(t), pdf)
+            });
+            let weight = weight.as_ref().map(|weight| weight as &dyn Fn(f64) -> f64);
+            let range = (span.start, span.end.min(end));
+            let random = &mut self.rays.random[slot];
+            let emission = weighted_emission_along(volume, &ray, range, weight, random);
             path.emission += path.throughput * emission.as_vec3();
         }
     }
 
     /// The path collides in `volume`: emission is gathered, a light is chosen, a direction drawn.
     #[inline(always)]
-    fn scatter(&mut self, slot: usize, volume: usize, distance: f32) -> Next {
-        let volume = &self.scene.volumes[volume];
+    fn scatter(&mut self, slot: usize, number: usize, distance: f32) -> Next {
+        let volume = &self.scene.volumes[number];
         let path = &mut self.paths[slot];
         let random = &mut self.rays.random[slot];
         path.position += path.direction * distance;
@@ -292,30 +342,96 @@ impl<'a> Engine<'a> {
             None => (volume.albedo, volume.emission),
             Some(fields) => FastVolume::looked_up(fields, self.scene.to_world(path.position)),
         };
-        if path.scatterings == 0 {
-            path.first = Some((distance, albedo));
+        if path.turns == 0 {
+            let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());
+            path.first = Some(FirstMet { distance, albedo, ..FirstMet::default() });
         }
-        path.emission += path.throughput * emission;
-        if self.scene.scene.max_depth.is_some_and(|depth| path.scatterings >= depth) {
+        path.emission += path.throughput * emission * self.scene.glow_weight(path, number, emission);
+        if self.scene.scene.max_depth.is_some_and(|depth| path.turns >= depth) {
             return Next::Record;
         }
         path.throughput *= albedo;
-        let strength = path.throughput.max_element();
-        if strength < ROULETTE_THROUGHPUT {
-            let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
-            if random.f32() >= probability {
-                return Next::Record;
-            }
-            path.throughput /= probability;
+        let refraction = self.sided.get(slot).map_or(1.0, |sided| sided.refraction as f32);
+        if !survives_roulette(path, refraction, random) {
+            return Next::Record;
         }
+        path.turns += 1;
         path.scatterings += 1;
 
-        let traced = choose_direct(self.scene, path, volume.phase, random);
+        if self.scene.is_sided {
+            self.sided[slot].collide(self.scene.scene, f64::from(distance));
+        }
+        let mut traced = choose_direct(self.scene, path, volume.phase, random);
+        if traced && self.scene.is_sided {
+            let toward = path.shadow_direction.as_dvec3().normalize();
+            let light_distance = f64::from(path.light_distance);
+            traced = self.sided[slot].sees(self.scene.scene, toward, light_distance, random);
+        }
 
         let before = path.direction;
         path.direction = volume.phase.sample(before, random.f32x2());
-        path.phase_pdf = volume.phase.value(before, path.direction);
+        path.turn_pdf = volume.phase.value(before, path.direction);
+        path.turned = Some(self.scene.to_world(path.position));
+        if self.scene.is_sided {
+            self.sided[slot].ray.direction = path.direction.as_dvec3().normalize();
+        }
         if traced { Next::LookAtLight } else { Next::Fly }
+    }
+
+    /// The path's ray has gone through all volumes to a surface, or past all: the surface's own light is gathered, a light
+    /// is chosen, a direction drawn.
+    #[inline(never)]
+    fn arrive(&mut self, slot: usize) -> Next {
+        let Some(hit) = self.sided[slot].way.hit else { return self.escape(slot) };
+        let scene = self.scene.scene;
+        let sided = &mut self.sided[slot];
+        let path = &mut self.paths[slot];
+        let random = &mut self.rays.random[slot];
+        path.add_in_scattered(path.throughput * lamp_radiance(scene, path, sided.ray.direction, &hit));
+
+        let vertex = sided.vertex(scene, &hit);
+        if path.turns == 0 {
+            path.first = Some(vertex.first_met(scene, vertex.albedo().truncate()));
+        }
+        if scene.max_depth.is_some_and(|depth| path.turns >= depth) {
+            return Next::Record;
+        }
+        path.turns += 1;
+
+        let mut traced = false;
+        if !vertex.is_delta() {
+            let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
+            if let Some(Direct { unshadowed, toward, distance, .. }) =
+                draw_light(scene, vertex.position(), value, random)
+                && unshadowed != Vec3::ZERO
+            {
+                path.direct = path.throughput * unshadowed;
+                path.shadow_direction = toward.as_vec3();
+                path.light_distance = distance as f32;
+                traced = sided.sees_from(scene, &vertex, toward, distance, random);
+            }
+        }
+
+        path.position = (vertex.position() - self.scene.centre).as_vec3();
+        let onward = vertex.sample(random).filter(|onward| {
+            path.throughput *= onward.weight.truncate().as_vec3();
+            sided.refraction *= onward.radiance_scale;
+            survives_roulette(path, sided.refraction as f32, random)
+        });
+        match onward {
+            Some(onward) => {
+                path.direction = onward.direction.as_vec3();
+                path.turned = onward.pdf.map(|_| vertex.position());
+                path.turn_pdf = onward.pdf.unwrap_or_default() as f32;
+                (sided.ray, sided.presence) = vertex.leave(scene, onward.direction, &sided.presence);
+            }
+            None => path.throughput = Vec3::ZERO,
+        }
+        match (traced, path.throughput == Vec3::ZERO) {
+            (true, _) => Next::LookAtLight,
+            (false, true) => Next::Record,
+            (false, false) => Next::Fly,
+        }
     }
 
     #[inline(always)]
@@ -333,13 +449,17 @@ impl<'a> Engine<'a> {
         let scene = self.scene.scene;
         let direction = path.direction.as_dvec3().normalize();
         let mut radiance = Vec3::ZERO;
-        for (light, &probability) in scene.lights.iter().zip(&scene.light_probabilities) {
-            let mut weight = 1.0;
-            if path.scatterings > 0 && probability > 0.0 {
-                let phase_pdf = f64::from(path.phase_pdf);
-                weight = phase_pdf / (phase_pdf + probability * light.pdf(direction));
+        for (number, light) in scene.lights.iter().enumerate() {
+            let arriving = light.radiance(direction);
+            if arriving == DVec3::ZERO {
+                continue;
             }
-            radiance += (light.radiance(direction) * weight).as_vec3();
+            let mut weight = 1.0;
+            if let Some(from) = path.turned {
+                let turn_pdf = f64::from(path.turn_pdf);
+                weight = turn_pdf / (turn_pdf + scene.light_probability(number, from) * light.pdf(direction));
+            }
+            radiance += (arriving * weight).as_vec3();
         }
         path.add_in_scattered(path.throughput * radiance);
         Next::Record
@@ -349,15 +469,17 @@ impl<'a> Engine<'a> {
     fn record(&mut self, slot: usize) {
         let path = &self.paths[slot];
         let radiance = path.background + path.emission + path.single + path.multiple;
-        let (depth, albedo) = path.first.unwrap_or_default();
+        let first = path.first.unwrap_or_default();
         let sample = Sample {
             radiance: radiance.to_array(),
             hit: path.first.is_some(),
-            depth,
-            albedo: albedo.to_array(),
+            depth: first.distance as f32,
+            albedo: first.albedo.as_vec3().to_array(),
             emission: path.emission.to_array(),
             single: path.single.to_array(),
             multiple: path.multiple.to_array(),
+            normal: first.normal.as_vec3().to_array(),
+            object: first.object,
             ..Sample::default()
         };
         self.tiles[path.pixel.tile as usize].add(path.pixel.x, path.pixel.y, &sample);
@@ -369,21 +491,21 @@ impl<'a> Engine<'a> {
 #[inline(always)]
 fn choose_direct(scene: &FastScene, path: &mut Path, phase: volume::Phase<'_>, random: &mut Random) -> bool {
     let from = scene.to_world(path.position);
-    let Some((number, probability)) = scene.scene.choose_light(from, random.f64()) else {
+    let before = path.direction;
+    let value = |toward: DVec3| {
+        let phase = f64::from(phase.value(before, toward.as_vec3()));
+        (DVec3::splat(phase), phase)
+    };
+    let direct = draw_light(scene.scene, from, value, random);
+    let Some(Direct { unshadowed, arriving, toward, distance }) = direct else {
         return false;
     };
-    let sample = scene.scene.lights[number].sample(from, [random.f64(), random.f64()]);
-    let toward = sample.toward.as_vec3();
-    let phase_value = phase.value(path.direction, toward);
-    let light_pdf = (probability * sample.pdf) as f32;
-    let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + phase_value) };
-    let unscattered = sample.radiance_over_pdf.as_vec3() / probability as f32;
-    let direct = path.throughput * unscattered * (phase_value * weight);
+    let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
     if strength <= 0.0 {
         return false;
     }
-    let isotropic = unscattered.max_element() * 0.25 * std::f32::consts::FRAC_1_PI;
+    let isotropic = arriving.max_element() * 0.25 * std::f32::consts::FRAC_1_PI;
     let traced = strength / (CERTAIN_CONTRIBUTION * isotropic);
     let mut boost = 1.0;
     if traced < 1.0 {
@@ -393,8 +515,24 @@ fn choose_direct(scene: &FastScene, path: &mut Path, phase: volume::Phase<'_>, r
         boost = 1.0 / traced;
     }
     path.direct = direct * boost;
-    path.shadow_direction = toward;
-    path.light_distance = sample.distance as f32;
+    path.shadow_direction = toward.as_vec3();
+    path.light_distance = distance as f32;
+    true
+}
+
+/// Ends a weak path with a probability that its survivors' weight makes up for; `refraction` is the part of the throughput
+/// that is no loss of light.
+#[inline(always)]
+fn survives_roulette(path: &mut Path, refraction: f32, random: &mut Random) -> bool {
+    let strength = path.throughput.max_element() / refraction;
+    if strength >= ROULETTE_THROUGHPUT {
+        return true;
+    }
+    let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
+    if random.f32() >= probability {
+        return false;
+    }
+    path.throughput /= probability;
     true
 }
 

@@ -4,8 +4,10 @@
 //! many paths at once; the rest of a path is needed only when something happens to it. 512 paths take about
 //! 130 KiB and stay in a core's L2 cache.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use tyndall_lanes::Random;
+
+use crate::path_layers::FirstMet;
 
 /// Paths in flight on a thread: enough that the loads of some hide behind the work of others.
 pub(super) const POOL: usize = 512;
@@ -86,11 +88,18 @@ pub(super) struct Path {
     /// Direction of the path's own ray (not of a shadow ray).
     pub direction: Vec3,
     pub throughput: Vec3,
-    /// Density with which `direction` was drawn from a phase function; 0 for the camera's ray.
-    pub phase_pdf: f32,
+    /// Density with which `direction` was drawn from a phase function, or at a surface.
+    pub turn_pdf: f32,
+    /// Where that was; none for the camera's ray and after a mirror, which next-event estimation does not compete with.
+    pub turned: Option<DVec3>,
+    /// Turns so far, at collisions and surfaces.
+    pub turns: u32,
+    /// Collisions so far.
     pub scatterings: u32,
     /// Volume of the nearest collision found so far along the ray, and its distance.
     pub nearest: Option<(u32, f32)>,
+    /// Number of the span that the current ray is in.
+    pub place: u32,
     /// What the shadow ray brings if nothing is in its way.
     pub direct: Vec3,
     pub shadow_direction: Vec3,
@@ -101,8 +110,8 @@ pub(super) struct Path {
     pub emission: Vec3,
     pub single: Vec3,
     pub multiple: Vec3,
-    /// Distance of the first collision and the albedo there.
-    pub first: Option<(f32, Vec3)>,
+    /// What the camera's ray met.
+    pub first: Option<FirstMet>,
 }
 
 impl Path {

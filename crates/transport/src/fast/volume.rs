@@ -2,8 +2,11 @@
 
 use glam::{Affine3A, DAffine3, DVec3, Vec3};
 use tyndall_optics::PhaseFunction;
-use tyndall_scene::{Density, Ray, Scene, Volume};
+use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 use tyndall_volumes::{BrickGrid, Filter};
+
+use super::pool::Path;
+use crate::emission::path_weight;
 
 /// Everything in f32 is kept relative to a point amid the volumes, so that a scene far from the origin loses no
 /// digits.
@@ -13,6 +16,10 @@ pub(crate) struct FastScene<'a> {
     pub volumes: Vec<FastVolume<'a>>,
     /// Whether any volume sends out light along the way.
     pub shines: bool,
+    /// Whether paths carry what surfaces need.
+    pub is_sided: bool,
+    /// Whether glowing volumes are drawn as lights.
+    pub has_volume_lights: bool,
 }
 
 pub(crate) struct FastVolume<'a> {
@@ -57,7 +64,20 @@ impl<'a> FastScene<'a> {
         };
         let volumes: Vec<_> = scene.volumes.iter().map(|volume| FastVolume::new(volume, centre)).collect();
         let shines = volumes.iter().any(|volume| volume.shines.is_some());
-        FastScene { scene, centre, volumes, shines }
+        let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
+        let is_sided = !scene.surfaces.is_empty();
+        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights }
+    }
+
+    /// Weight of the glow that a path has found at its collision in a volume, against next-event estimation.
+    #[inline(always)]
+    pub(super) fn glow_weight(&self, path: &Path, volume: usize, emission: Vec3) -> f32 {
+        if !self.has_volume_lights || emission == Vec3::ZERO {
+            return 1.0;
+        }
+        let pdf = f64::from(path.turn_pdf);
+        let here = self.to_world(path.position);
+        path.turned.map_or(1.0, |from| path_weight(self.scene, volume, from, here, pdf) as f32)
     }
 
     pub fn to_world(&self, position: Vec3) -> DVec3 {

@@ -46,27 +46,39 @@ impl PathDensities {
         self.normalise();
     }
 
-    /// After scattering into a direction where the channels' phase functions are `phase`.
+    /// After a mirror, whose direction next-event estimation does not find.
+    pub(super) fn mirror(&mut self) {
+        self.next_event = None;
+    }
+
+    /// After turning into a direction that the channels would have drawn with the densities `phase`: their phase functions.
     pub(super) fn turn(&mut self, phase: DVec4) {
         self.next_event = Some(self.relative);
         self.relative *= phase;
         self.normalise();
     }
 
-    /// Weight p/(p + p_l q) of a path that has left, against next-event estimation with the density `light_pdf`.
+    /// Weight p/(p + p_l q) of a path that has left or met a lamp, against next-event estimation with the density `light_pdf`.
     pub(super) fn weight_against(&self, light_pdf: f64) -> f64 {
         let next_event = self.next_event.map_or(0.0, |next_event| self.mean(next_event));
         1.0 / (1.0 + light_pdf * next_event)
     }
 
     /// f_λ/(A_λ L_λ) over the densities of all ways to a light along a shadow ray, with L over the light's density
-    /// `light_pdf`; none for a delta light, which has one way only.
-    pub(super) fn connect(&self, phase: DVec4, shadow: &ShadowRay, light_pdf: Option<f64>) -> DVec4 {
+    /// `light_pdf`; none for a delta light, which has one way only. `value` is what the turn towards the light makes of light,
+    /// `pdf` the densities with which paths turn there.
+    pub(super) fn connect(
+        &self,
+        value: DVec4,
+        pdf: DVec4,
+        shadow: &ShadowRay,
+        light_pdf: Option<f64>,
+    ) -> DVec4 {
         let greatest = self.greatest(shadow.log_density);
         let drawn = self.relative * exp(shadow.log_density - greatest, 0.0);
-        let arriving = drawn * phase * exp(-shadow.optical_thickness, 0.0) * shadow.null_fraction;
-        let continued = light_pdf.map_or(0.0, |light_pdf| self.mean(arriving) / light_pdf);
-        arriving * (shadow.roulette / (self.mean(drawn) + continued))
+        let arriving = drawn * exp(-shadow.optical_thickness, 0.0) * shadow.null_fraction;
+        let continued = light_pdf.map_or(0.0, |light_pdf| self.mean(arriving * pdf) / light_pdf);
+        arriving * value * (shadow.roulette / (self.mean(drawn) + continued))
     }
 
     fn mean(&self, densities: DVec4) -> f64 {

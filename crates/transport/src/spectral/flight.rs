@@ -16,6 +16,8 @@ use tyndall_lanes::Random;
 use tyndall_scene::{ChannelMedium, Density, Ray, Volume};
 use tyndall_volumes::BrickGrid;
 
+use crate::way::Way;
+
 /// One free flight.
 #[derive(Debug, Clone)]
 pub(super) struct Flight {
@@ -32,37 +34,47 @@ pub(super) struct Flight {
 }
 
 impl Flight {
-    /// Draws a flight along `ray` for the channel `hero`; `media` are those of the volumes.
+    /// Draws a flight on the way of `ray` for the channel `hero`; `media` are those of the volumes.
     pub(super) fn draw(
         volumes: &[Volume],
         media: &[ChannelMedium],
         ray: &Ray,
+        way: &Way,
         hero: usize,
         random: &mut Random,
     ) -> Flight {
         let mu_t: Vec<DVec4> = media.iter().map(|medium| medium.mu_t_along(ray.direction)).collect();
         let mut collision = None;
-        let mut end = f64::INFINITY;
+        let mut end = way.end;
         let mut nulls: Vec<(usize, f64, f64)> = Vec::new();
-        for (number, (volume, mu_t)) in volumes.iter().zip(&mu_t).enumerate() {
+        for span in &way.spans {
+            let (volume, number) = (&volumes[span.volume], span.volume);
             let local = volume.local_ray(ray);
             let note_null = |t, fraction| nulls.push((number, t, fraction));
-            let real = first_real_collision(volume, &local, end, mu_t[hero], random, note_null);
+            let range = (span.start, span.end.min(end));
+            let real = first_real_collision(volume, &local, range, mu_t[number][hero], random, note_null);
             if let Some(distance) = real {
                 end = distance;
                 collision = Some((distance, number));
             }
         }
         let mut flight = Flight { collision, nulls, ..Flight::start() };
-        flight.weigh(volumes, &mu_t, ray, end);
+        flight.weigh(volumes, &mu_t, ray, way, end);
         flight
     }
 
     /// The part of the flight before the distance `t`, which is less than that of its collision.
-    pub(super) fn up_to(&self, volumes: &[Volume], media: &[ChannelMedium], ray: &Ray, t: f64) -> Flight {
+    pub(super) fn up_to(
+        &self,
+        volumes: &[Volume],
+        media: &[ChannelMedium],
+        ray: &Ray,
+        way: &Way,
+        t: f64,
+    ) -> Flight {
         let mu_t: Vec<DVec4> = media.iter().map(|medium| medium.mu_t_along(ray.direction)).collect();
         let mut part = Flight { nulls: self.nulls.clone(), ..Flight::start() };
-        part.weigh(volumes, &mu_t, ray, t);
+        part.weigh(volumes, &mu_t, ray, way, t);
         part
     }
 
@@ -78,9 +90,11 @@ impl Flight {
     }
 
     /// Fills in the densities of the flight that ends at `end`.
-    fn weigh(&mut self, volumes: &[Volume], mu_t: &[DVec4], ray: &Ray, end: f64) {
-        for (volume, mu_t) in volumes.iter().zip(mu_t) {
-            let thickness = optical_thickness(*mu_t, bound_integral(volume, &volume.local_ray(ray), end));
+    fn weigh(&mut self, volumes: &[Volume], mu_t: &[DVec4], ray: &Ray, way: &Way, end: f64) {
+        for span in way.spans.iter().filter(|span| span.start < end) {
+            let volume = &volumes[span.volume];
+            let integral = bound_integral(volume, &volume.local_ray(ray), (span.start, span.end.min(end)));
+            let thickness = optical_thickness(mu_t[span.volume], integral);
             self.log_density -= thickness;
             if matches!(volume.density, Density::Grid(_)) {
                 self.log_next_event -= thickness;
@@ -98,12 +112,12 @@ impl Flight {
     }
 }
 
-/// The distance of the first real collision in a volume before `end`; null ones are told to `note_null` with their
+/// The distance of the first real collision in a volume between the distances of `range`; null ones are told to `note_null` with their
 /// distance and 1 − ρ.
 fn first_real_collision(
     volume: &Volume,
     local: &Ray,
-    end: f64,
+    range: (f64, f64),
     mu_t: f64,
     random: &mut Random,
     mut note_null: impl FnMut(f64, f64),
@@ -112,11 +126,11 @@ fn first_real_collision(
         return None;
     }
     let Density::Grid(grid) = &volume.density else {
-        let (enter, leave) = volume.interval(local, end)?;
+        let (enter, leave) = volume.interval(local, range)?;
         let distance = volume.distance_of_integral(local, enter, random.exponential_f64() / mu_t);
         return (distance < leave).then_some(distance);
     };
-    tentative_collisions(grid, local, end, mu_t, random, |t, rho, random| {
+    tentative_collisions(grid, local, range, mu_t, random, |t, rho, random| {
         if random.f64() < rho {
             return ControlFlow::Break(t);
         }
@@ -126,17 +140,17 @@ fn first_real_collision(
     .break_value()
 }
 
-/// Calls `visit` with the distance and ρ = D/D̄ of each tentative collision along the ray before `end`, in order, until
-/// it breaks. `mu_t` is positive.
+/// Calls `visit` with the distance and ρ = D/D̄ of each tentative collision along the ray between the distances of
+/// `range`, in order, until it breaks. `mu_t` is positive.
 pub(super) fn tentative_collisions<B>(
     grid: &BrickGrid,
     local: &Ray,
-    end: f64,
+    range: (f64, f64),
     mu_t: f64,
     random: &mut Random,
     mut visit: impl FnMut(f64, f64, &mut Random) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
-    grid.segments(local.origin, local.direction, (0.0, end), |segment| {
+    grid.segments(local.origin, local.direction, range, |segment| {
         let bound = f64::from(segment.bounds.max);
         if bound <= 0.0 {
             return ControlFlow::Continue(());
@@ -152,14 +166,14 @@ pub(super) fn tentative_collisions<B>(
     })
 }
 
-/// ∫₀^end D̄ along the ray: of the bounds of a grid, of the density itself where it has a closed form.
-pub(super) fn bound_integral(volume: &Volume, local: &Ray, end: f64) -> f64 {
+/// ∫ D̄ along the ray between the distances of `range`: of the bounds of a grid, of the density itself where it has a closed form.
+pub(super) fn bound_integral(volume: &Volume, local: &Ray, range: (f64, f64)) -> f64 {
     let Density::Grid(grid) = &volume.density else {
-        let within = volume.interval(local, end);
+        let within = volume.interval(local, range);
         return within.and_then(|within| volume.density_integral(local, within)).unwrap_or(0.0);
     };
     let mut integral = 0.0;
-    let _: ControlFlow<()> = grid.segments(local.origin, local.direction, (0.0, end), |segment| {
+    let _: ControlFlow<()> = grid.segments(local.origin, local.direction, range, |segment| {
         integral += f64::from(segment.bounds.max) * (segment.end - segment.start);
         ControlFlow::Continue(())
     });

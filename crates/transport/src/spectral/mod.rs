@@ -38,20 +38,22 @@
 mod densities;
 mod flight;
 mod hero_wavelengths;
-mod layers;
 mod shadow;
 
 use glam::{DMat3, DVec3, DVec4};
 use tyndall_film::Sample;
 use tyndall_lanes::Random;
 use tyndall_optics::{cie, uplift};
-use tyndall_scene::{ChannelMedium, Channels, Observer, Ray, Scene};
+use tyndall_scene::surface::Presence;
+use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
-use crate::emission::{emission_factor_along, emitting_stretch};
+use crate::emission::{emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight};
+use crate::path_layers::{FirstMet, PathLayers};
+use crate::surface_vertex::SurfaceVertex;
+use crate::way::Way;
 
 use self::densities::PathDensities;
 use self::flight::Flight;
-use self::layers::Layers;
 use self::shadow::ShadowRay;
 
 /// Weight below which roulette is played.
@@ -128,53 +130,118 @@ impl<'a> SpectralScene<'a> {
     }
 
     /// One estimate of the radiance that arrives along `ray` in every channel, sorted into the film's layers.
-    pub fn trace(&self, mut ray: Ray, random: &mut Random) -> Sample {
+    pub fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
         let scene = self.scene;
-        let mut layers = Layers::default();
+        let mut layers = PathLayers::<DVec4>::default();
         let count = self.channels.count();
         let hero = ((random.f64() * count as f64) as usize).min(count - 1);
-        // Product of the albedos at the collisions and of what roulette makes up for.
-        let mut albedo = self.channels.ones();
-        let mut densities = PathDensities::new(&self.channels);
+        let presence = scene.presence_at_camera(ray.origin);
+        let ones = self.channels.ones();
+        let densities = PathDensities::new(&self.channels);
+        let mut path = Path { ray, presence, hero, weight: ones, refraction: 1.0, densities, turn: None };
+        let mut turns = 0;
         let mut scatterings = 0;
 
         loop {
-            let flight = Flight::draw(&scene.volumes, &self.media, &ray, hero, random);
-            layers.emission += albedo * self.emission_along(&ray, &flight, &densities, random);
-            densities.fly(&flight);
-            let Some((distance, number)) = flight.collision else {
-                layers.add_in_scattered(
-                    scatterings,
-                    albedo * densities.relative() * self.escaped_radiance(ray.direction, &densities),
-                );
-                break;
+            let way = Way::trace(scene, &path.ray, f64::INFINITY, &path.presence, random);
+            let flight = Flight::draw(&scene.volumes, &self.media, &path.ray, &way, hero, random);
+            layers.emission += path.weight * self.emission_along(&path, &way, &flight, random);
+            path.densities.fly(&flight);
+            let may_turn = scene.max_depth.is_none_or(|depth| turns < depth);
+
+            if let Some((distance, number)) = flight.collision {
+                let position = path.ray.at(distance);
+                let medium = &self.media[number];
+                if turns == 0 {
+                    let albedo = self.albedo_of(number, position);
+                    layers.first = Some(FirstMet { distance, albedo, ..FirstMet::default() });
+                }
+                let (albedo, emission) = scene.volumes[number].colours_at(position, medium, &self.channels);
+                if emission != DVec4::ZERO {
+                    let emitted =
+                        (DVec4::ONE - albedo) * emission * path.glow_weight(scene, number, position);
+                    layers.emission += path.weight * path.densities.relative() * emitted;
+                }
+
+                if !may_turn {
+                    break;
+                }
+                path.weight *= albedo;
+                if !path.survives_roulette(random) {
+                    break;
+                }
+                turns += 1;
+                scatterings += 1;
+                path.presence = way.presence_at(scene, path.ray.direction, distance);
+
+                let before = path.ray.direction;
+                let vertex = Vertex {
+                    position,
+                    value: |toward| {
+                        let phases = medium.phases.values(before, toward);
+                        (phases, phases)
+                    },
+                    leave: |direction| (Ray { origin: position, direction }, path.presence.clone()),
+                };
+                layers.add(scatterings, path.weight * self.next_event(&vertex, &path, random));
+
+                let onward = medium.phases.of(hero).sample(before, [random.f64(), random.f64()]);
+                let phases = medium.phases.values(before, onward);
+                path.turn_into(&self.channels, position, phases);
+                path.ray = Ray { origin: position, direction: onward };
+                continue;
+            }
+
+            let arriving = match &way.hit {
+                None => self.escaped_radiance(&path),
+                Some(hit) => self.lamp_radiance(&path, hit),
             };
-            let position = ray.at(distance);
-            let medium = &self.media[number];
-            if scatterings == 0 {
-                layers.first_collision(distance, self.albedo_of(number, position));
+            layers.add(scatterings, path.weight * path.densities.relative() * arriving);
+            let Some(hit) = way.hit else { break };
+
+            let surface = SurfaceVertex::new(scene, &hit, path.ray.direction, &self.channels);
+            if turns == 0 {
+                layers.first = Some(surface.first_met(scene, self.surface_albedo(&hit, &path.ray)));
             }
-            let (albedo_here, emission) = scene.volumes[number].colours_at(position, medium, &self.channels);
-
-            layers.emission += albedo * densities.relative() * (DVec4::ONE - albedo_here) * emission;
-
-            if scene.max_depth.is_some_and(|depth| scatterings >= depth) {
+            if !may_turn {
                 break;
             }
-            albedo *= albedo_here;
-            if !survives_roulette(&mut albedo, densities.relative(), random) {
+            turns += 1;
+            path.presence = way.presence_at(scene, path.ray.direction, hit.t);
+            if !surface.is_delta() {
+                let vertex = Vertex {
+                    position: surface.position(),
+                    value: |toward| (surface.value(toward), DVec4::splat(surface.pdf(toward))),
+                    leave: |direction| surface.leave(scene, direction, &path.presence),
+                };
+                layers.add(scatterings, path.weight * self.next_event(&vertex, &path, random));
+            }
+            let Some(onward) = surface.sample(random) else { break };
+            path.weight *= onward.weight;
+            path.refraction *= onward.radiance_scale;
+            if !path.survives_roulette(random) {
                 break;
             }
-            scatterings += 1;
-
-            let direct = self.next_event(position, ray.direction, medium, hero, &densities, random);
-            layers.add_in_scattered(scatterings, albedo * direct);
-
-            let onward = medium.phases.of(hero).sample(ray.direction, [random.f64(), random.f64()]);
-            densities.turn(medium.phases.values(ray.direction, onward));
-            ray = Ray { origin: position, direction: onward };
+            match onward.pdf {
+                Some(pdf) => path.turn_into(&self.channels, surface.position(), DVec4::splat(pdf)),
+                None => path.mirror(),
+            }
+            (path.ray, path.presence) = surface.leave(scene, onward.direction, &path.presence);
         }
-        layers.into_sample(&self.film_of_channels)
+        let film_of_channels = &self.film_of_channels;
+        layers.into_sample(|channels| {
+            let parts = film_of_channels.iter().zip(channels.to_array());
+            parts.map(|(film, channel)| *film * channel).sum::<DVec3>()
+        })
+    }
+
+    /// The albedo of a surface for the film.
+    fn surface_albedo(&self, hit: &Hit, ray: &Ray) -> DVec3 {
+        let channels = match self.scene.observer {
+            Observer::Bands(_) => &self.channels,
+            _ => &Channels::Rgb,
+        };
+        SurfaceVertex::new(self.scene, hit, ray.direction, channels).albedo().truncate()
     }
 
     /// The albedo of a volume for the film, where it has to lie between 0 and 1: of a band at its wavelength, otherwise in
@@ -191,71 +258,143 @@ impl<'a> SpectralScene<'a> {
 
     /// Light that volumes send out per length, up to the end of the flight: at a uniform point of each volume's stretch,
     /// which every hero could have reached. Its mean over flights is ∫ ε T dt in every channel, as in [`crate::emission`].
-    fn emission_along(
-        &self,
-        ray: &Ray,
-        flight: &Flight,
-        densities: &PathDensities,
-        random: &mut Random,
-    ) -> DVec4 {
-        let end = flight.collision.map_or(f64::INFINITY, |(distance, _)| distance);
+    fn emission_along(&self, path: &Path, way: &Way, flight: &Flight, random: &mut Random) -> DVec4 {
+        let end = flight.collision.map_or(way.end, |(distance, _)| distance);
         let mut sum = DVec4::ZERO;
-        for (volume, medium) in self.scene.volumes.iter().zip(&self.media) {
+        for span in way.spans.iter().filter(|span| span.start < end) {
+            let (volume, medium) = (&self.scene.volumes[span.volume], &self.media[span.volume]);
             if medium.emission_per_length == DVec4::ZERO {
                 continue;
             }
-            let Some((enter, leave)) = emitting_stretch(volume, ray, end) else { continue };
+            let range = (span.start, span.end.min(end));
+            let Some((enter, leave)) = emitting_stretch(volume, &path.ray, range) else { continue };
             let t = enter + random.f64() * (leave - enter);
-            let factor = emission_factor_along(volume, ray, t);
+            let factor = emission_factor_along(volume, &path.ray, t);
             if factor > 0.0 {
-                let mut here = *densities;
-                here.fly(&flight.up_to(&self.scene.volumes, &self.media, ray, t));
-                sum += here.relative() * medium.emission_per_length * (factor * (leave - enter));
+                let mut here = path.densities;
+                here.fly(&flight.up_to(&self.scene.volumes, &self.media, &path.ray, way, t));
+                let weight = path.glow_weight(self.scene, span.volume, path.ray.at(t));
+                sum += here.relative() * medium.emission_per_length * (factor * (leave - enter) * weight);
             }
         }
         sum
     }
 
-    /// Lo: radiance of the infinite lights in `direction`, each weighted against next-event estimation having drawn it.
-    fn escaped_radiance(&self, direction: DVec3, densities: &PathDensities) -> DVec4 {
-        let Scene { lights, light_probabilities, .. } = self.scene;
+    /// Lo of the surroundings: radiance of the infinite lights, each weighted against next-event estimation having drawn it.
+    fn escaped_radiance(&self, path: &Path) -> DVec4 {
+        let direction = path.ray.direction;
+        let lights = self.scene.lights.iter().enumerate();
         lights
-            .iter()
-            .zip(light_probabilities)
-            .enumerate()
-            .map(|(number, (light, probability))| {
-                let weight = densities.weight_against(probability * light.pdf(direction));
-                self.light(number, light.radiance(direction)) * weight
+            .map(|(number, light)| {
+                let radiance = light.radiance(direction);
+                if radiance == DVec3::ZERO {
+                    return DVec4::ZERO;
+                }
+                let weight = path.weight_against(self.scene, number, |_| light.pdf(direction));
+                self.light(number, radiance) * weight
             })
             .sum()
     }
 
-    /// Next-event estimation of ∫ f_p L dω over the light that arrives unscattered at `position`, times the path's
+    /// Le of a surface that is a lamp, weighted likewise.
+    fn lamp_radiance(&self, path: &Path, hit: &Hit) -> DVec4 {
+        let Some(number) = self.scene.surfaces.shape(hit).light else { return DVec4::ZERO };
+        let Light::Area(lamp) = &self.scene.lights[number] else { return DVec4::ZERO };
+        let direction = path.ray.direction;
+        let weight = path.weight_against(self.scene, number, |from| {
+            lamp.pdf_of_hit(from, direction, hit.position, hit.normal)
+        });
+        self.light(number, lamp.radiance_from(hit.normal, direction)) * weight
+    }
+
+    /// Next-event estimation of ∫ f L dω over the light that arrives unscattered at the vertex, times the path's
     /// densities over their mean.
-    fn next_event(
-        &self,
-        position: DVec3,
-        before: DVec3,
-        medium: &ChannelMedium,
-        hero: usize,
-        densities: &PathDensities,
-        random: &mut Random,
-    ) -> DVec4 {
-        let Some((number, probability)) = self.scene.choose_light(position, random.f64()) else {
+    fn next_event<V, L>(&self, vertex: &Vertex<V, L>, path: &Path, random: &mut Random) -> DVec4
+    where
+        V: Fn(DVec3) -> (DVec4, DVec4),
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
+        let Some((number, probability)) = self.scene.choose_light(vertex.position, random.f64()) else {
             return DVec4::ZERO;
         };
         let light = &self.scene.lights[number];
-        let sample = light.sample(position, [random.f64(), random.f64()]);
+        if let Light::Volume(_) = light {
+            return self.glow(vertex, path, number, probability, random);
+        }
+        let sample = light.sample(vertex.position, [random.f64(), random.f64()]);
         let radiance = self.light(number, sample.radiance_over_pdf) / probability;
-        let phase = medium.phases.values(before, sample.toward);
-        if densities.relative() * phase * radiance == DVec4::ZERO {
+        let (value, pdf) = (vertex.value)(sample.toward);
+        if path.densities.relative() * value * radiance == DVec4::ZERO {
             return DVec4::ZERO;
         }
-        let ray = Ray { origin: position, direction: sample.toward };
-        let shadow = ShadowRay::track(&self.scene.volumes, &self.media, &ray, sample.distance, hero, random);
-        let Some(shadow) = shadow else { return DVec4::ZERO };
+        let Some(shadow) = self.shadow(vertex, sample.toward, sample.distance, path.hero, random) else {
+            return DVec4::ZERO;
+        };
         let light_pdf = (!sample.is_delta).then_some(probability * sample.pdf);
-        radiance * densities.connect(phase, &shadow, light_pdf)
+        radiance * path.densities.connect(value, pdf, &shadow, light_pdf)
+    }
+
+    /// The same for a volume that glows: ∫ f T j/d² dV over its source j. Its weight against paths that find the glow is the
+    /// same for all channels, and so is left out of the sum over heroes.
+    fn glow<V, L>(
+        &self,
+        vertex: &Vertex<V, L>,
+        path: &Path,
+        number: usize,
+        probability: f64,
+        random: &mut Random,
+    ) -> DVec4
+    where
+        V: Fn(DVec3) -> (DVec4, DVec4),
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
+        let Light::Volume(light) = &self.scene.lights[number] else { return DVec4::ZERO };
+        let sample = light.sample(vertex.position, [random.f64(), random.f64(), random.f64()]);
+        let offset = sample.position - vertex.position;
+        let distance = offset.length();
+        if distance == 0.0 || sample.pdf_volume <= 0.0 {
+            return DVec4::ZERO;
+        }
+        let toward = offset / distance;
+        let (value, pdf) = (vertex.value)(toward);
+        let source = self.source_at(light.volume(), sample.position, toward);
+        if path.densities.relative() * value * source == DVec4::ZERO {
+            return DVec4::ZERO;
+        }
+        let mean_pdf = mean(&self.channels, pdf);
+        let weight =
+            1.0 - path_weight(self.scene, light.volume(), vertex.position, sample.position, mean_pdf);
+        let Some(shadow) = self.shadow(vertex, toward, distance, path.hero, random) else {
+            return DVec4::ZERO;
+        };
+        let density = distance * distance * sample.pdf_volume * probability;
+        source * path.densities.connect(value, pdf, &shadow, None) * (weight / density)
+    }
+
+    /// The source term of a volume at a place, μa·Le and what is given per length.
+    fn source_at(&self, number: usize, position: DVec3, toward: DVec3) -> DVec4 {
+        let (volume, medium) = (&self.scene.volumes[number], &self.media[number]);
+        let density = volume.density_at(volume.world_to_local.transform_point3(position));
+        let (albedo, emission) = volume.colours_at(position, medium, &self.channels);
+        let by_collisions = medium.mu_t_along(toward) * density * (DVec4::ONE - albedo) * emission;
+        by_collisions + medium.emission_per_length * emission_per_length_factor(volume, position)
+    }
+
+    /// The shadow ray from a vertex; none if nothing gets through.
+    fn shadow<V, L>(
+        &self,
+        vertex: &Vertex<V, L>,
+        toward: DVec3,
+        distance: f64,
+        hero: usize,
+        random: &mut Random,
+    ) -> Option<ShadowRay>
+    where
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
+        let (ray, presence) = (vertex.leave)(toward);
+        let way = Way::connect(self.scene, &ray, distance, &presence, random)?;
+        ShadowRay::track(&self.scene.volumes, &self.media, &ray, &way, hero, random)
     }
 
     /// Light of a colour in the channels, from the light of this number. Lights that have no spectrum, such as images and the
@@ -272,17 +411,71 @@ impl<'a> SpectralScene<'a> {
     }
 }
 
-/// Ends a weak path with a probability that its survivors' weight makes up for. The weight is the same whichever channel
-/// was the hero, and so roulette changes no ratio of densities.
-fn survives_roulette(albedo: &mut DVec4, relative_density: DVec4, random: &mut Random) -> bool {
-    let strength = (*albedo * relative_density).max_element();
-    if strength >= ROULETTE_WEIGHT {
-        return true;
+/// A path under way.
+struct Path {
+    ray: Ray,
+    /// The volumes that are present where the ray begins.
+    presence: Presence,
+    hero: usize,
+    /// A: product of the albedos, of what surfaces left of the light, and of what roulette makes up for.
+    weight: DVec4,
+    /// The part of the weight that is due to refraction, which roulette leaves out.
+    refraction: f64,
+    densities: PathDensities,
+    /// Where the path last turned, and the mean of the densities with which the channels would have done so into its
+    /// direction; none for the camera's own ray and after a mirror.
+    turn: Option<(DVec3, f64)>,
+}
+
+/// A place where a path turns, as next-event estimation sees it.
+struct Vertex<V, L> {
+    position: DVec3,
+    /// Of a direction: the phase functions or f |cos θ|, and the densities with which paths go on there.
+    value: V,
+    /// The ray in a direction, and the volumes that are present where it begins.
+    leave: L,
+}
+
+impl Path {
+    fn turn_into(&mut self, channels: &Channels, position: DVec3, pdf: DVec4) {
+        self.turn = Some((position, mean(channels, pdf)));
+        self.densities.turn(pdf);
     }
-    let probability = strength / (2.0 * ROULETTE_WEIGHT);
-    if random.f64() >= probability {
-        return false;
+
+    fn mirror(&mut self) {
+        self.turn = None;
+        self.densities.mirror();
     }
-    *albedo /= probability;
-    true
+
+    /// Weight against next-event estimation, which draws the same direction from where the path turned with the density
+    /// `pdf` if it draws the light of this number.
+    fn weight_against(&self, scene: &Scene, light: usize, pdf: impl Fn(DVec3) -> f64) -> f64 {
+        let Some((from, _)) = self.turn else { return 1.0 };
+        self.densities.weight_against(scene.light_probability(light, from) * pdf(from))
+    }
+
+    /// Weight of the glow of a volume at `position`, found by this path, against next-event estimation.
+    fn glow_weight(&self, scene: &Scene, volume: usize, position: DVec3) -> f64 {
+        self.turn.map_or(1.0, |(from, pdf)| path_weight(scene, volume, from, position, pdf))
+    }
+
+    /// Ends a weak path with a probability that its survivors' weight makes up for. The weight is the same whichever channel
+    /// was the hero, and so roulette changes no ratio of densities.
+    fn survives_roulette(&mut self, random: &mut Random) -> bool {
+        let strength = (self.weight * self.densities.relative()).max_element() / self.refraction;
+        if strength >= ROULETTE_WEIGHT {
+            return true;
+        }
+        let probability = strength / (2.0 * ROULETTE_WEIGHT);
+        if random.f64() >= probability {
+            return false;
+        }
+        self.weight /= probability;
+        true
+    }
+}
+
+/// Mean over the channels of a path.
+fn mean(channels: &Channels, values: DVec4) -> f64 {
+    (values * channels.ones()).element_sum() / channels.count() as f64
 }

@@ -15,6 +15,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::{ChannelMedium, Density, Ray, Volume};
 
 use super::flight::{bound_integral, ln, optical_thickness, tentative_collisions};
+use crate::way::Way;
 
 /// Weight below which roulette is played, and the weight of survivors.
 const ROULETTE_WEIGHT: f64 = 0.1;
@@ -33,12 +34,12 @@ pub(super) struct ShadowRay {
 }
 
 impl ShadowRay {
-    /// Tracks `ray` from 0 to `end` with the tentative collisions of channel `hero`; none if nothing gets through.
+    /// Tracks `ray` on its way with the tentative collisions of channel `hero`; none if nothing gets through.
     pub(super) fn track(
         volumes: &[Volume],
         media: &[ChannelMedium],
         ray: &Ray,
-        end: f64,
+        way: &Way,
         hero: usize,
         random: &mut Random,
     ) -> Option<ShadowRay> {
@@ -48,10 +49,12 @@ impl ShadowRay {
             null_fraction: 1.0,
             roulette: 1.0,
         };
-        for (volume, medium) in volumes.iter().zip(media) {
-            let mu_t = medium.mu_t_along(ray.direction);
+        for span in &way.spans {
+            let volume = &volumes[span.volume];
+            let mu_t = media[span.volume].mu_t_along(ray.direction);
             let local = volume.local_ray(ray);
-            let thickness = optical_thickness(mu_t, bound_integral(volume, &local, end));
+            let range = (span.start, span.end);
+            let thickness = optical_thickness(mu_t, bound_integral(volume, &local, range));
             let Density::Grid(grid) = &volume.density else {
                 shadow.optical_thickness += thickness;
                 continue;
@@ -60,7 +63,7 @@ impl ShadowRay {
             if mu_t[hero] <= 0.0 {
                 continue;
             }
-            let walk = tentative_collisions(grid, &local, end, mu_t[hero], random, |_, rho, random| {
+            let walk = tentative_collisions(grid, &local, range, mu_t[hero], random, |_, rho, random| {
                 shadow.log_density += ln(mu_t);
                 shadow.null_fraction *= 1.0 - rho;
                 shadow.survives_roulette(random)

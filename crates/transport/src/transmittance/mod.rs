@@ -131,10 +131,10 @@ impl TransmittanceEstimator {
     }
 }
 
-/// An unbiased estimate of the transmittance of `volume` along `ray` from 0 to `end`, by what is best as a rule: the
-/// closed form where there is one, else ratio tracking with roulette.
-pub fn estimate_transmittance(volume: &Volume, ray: &Ray, end: f64, random: &mut Random) -> f64 {
-    let Some(ray) = AlongRay::through_one(volume, ray, end) else { return 1.0 };
+/// An unbiased estimate of the transmittance of `volume` along `ray` between the two distances of `range`, by what is best
+/// as a rule: the closed form where there is one, else ratio tracking with roulette.
+pub fn estimate_transmittance(volume: &Volume, ray: &Ray, range: (f64, f64), random: &mut Random) -> f64 {
+    let Some(ray) = AlongRay::through_one(volume, ray, range) else { return 1.0 };
     let estimator = match volume.density {
         Density::Grid(_) => TransmittanceEstimator::RatioTrackingRoulette,
         _ => TransmittanceEstimator::ClosedForm,

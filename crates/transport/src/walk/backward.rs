@@ -57,7 +57,7 @@ impl LightMeter<'_> {
                 .scene
                 .volumes
                 .iter()
-                .map(|volume| estimate_transmittance(volume, &ray, sample.distance, random));
+                .map(|volume| estimate_transmittance(volume, &ray, (0.0, sample.distance), random));
             sample.radiance_over_pdf * cosine * transmittance.product::<f64>()
         });
         let direct: DVec3 = lights.sum();

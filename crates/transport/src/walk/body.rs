@@ -105,7 +105,9 @@ impl Body {
     }
 
     fn is_hit(&self, ray: &Ray) -> bool {
-        self.volumes.iter().any(|volume| volume.interval(&volume.local_ray(ray), f64::INFINITY).is_some())
+        self.volumes
+            .iter()
+            .any(|volume| volume.interval(&volume.local_ray(ray), (0.0, f64::INFINITY)).is_some())
     }
 }
 

@@ -65,7 +65,7 @@ impl<'a> Space<'a> {
         loop {
             let (end, side) = self.next_border(&ray);
             for volume in self.volumes {
-                transmittance *= estimate_transmittance(volume, &ray, end, random);
+                transmittance *= estimate_transmittance(volume, &ray, (0.0, end), random);
                 if transmittance == 0.0 {
                     return (0.0, ray.origin);
                 }

@@ -68,7 +68,7 @@ pub(super) fn first_collision<'a>(
 ) -> Option<(f64, &'a Volume)> {
     let mut nearest = None;
     for volume in volumes {
-        if let Some(distance) = sample_distance(volume, ray, end, random) {
+        if let Some(distance) = sample_distance(volume, ray, (0.0, end), random) {
             end = distance;
             nearest = Some((distance, volume));
         }

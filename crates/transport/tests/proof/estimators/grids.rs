@@ -25,7 +25,7 @@ fn grid(volume: &Volume) -> &BrickGrid {
 /// (distance, optical thickness up to it) at every plane of voxel centres that the ray crosses up to `end`.
 fn optical_thickness(volume: &Volume, ray: &Ray, end: f64) -> Vec<(f64, f64)> {
     let (local, grid) = (volume.local_ray(ray), grid(volume));
-    let Some((enter, leave)) = volume.interval(&local, end) else { return vec![(end, 0.0)] };
+    let Some((enter, leave)) = volume.interval(&local, (0.0, end)) else { return vec![(end, 0.0)] };
     let mut knots = vec![enter, leave];
     for axis in 0..3 {
         let (origin, direction) = (local.origin[axis], local.direction[axis]);
@@ -109,7 +109,8 @@ fn collision_distances_in_a_grid_of_ones_follow_the_exponential_law() {
         let ray = Ray { origin: DVec3::new(9.0, 8.0, 13.0), direction: direction.normalize() };
         let end = 9.0;
         let mut random = Random::new(3, number as u64, 0);
-        let draws: Vec<_> = (0..100_000).map(|_| sample_distance(volume, &ray, end, &mut random)).collect();
+        let draws: Vec<_> =
+            (0..100_000).map(|_| sample_distance(volume, &ray, (0.0, end), &mut random)).collect();
         let inside: Vec<f64> = draws.iter().flatten().copied().collect();
         let share = 1.0 - f64::exp(-0.2 * end);
         let p = kolmogorov_smirnov(&inside, |t| (1.0 - f64::exp(-0.2 * t)) / share);
@@ -136,7 +137,9 @@ fn collision_distances_in_rough_grids_follow_the_extinction_along_the_ray() {
             expected += share * f64::from(n);
             variance += share * (1.0 - share) * f64::from(n);
             for _ in 0..n {
-                let Some(t) = sample_distance(volume, &ray, f64::INFINITY, &mut random) else { continue };
+                let Some(t) = sample_distance(volume, &ray, (0.0, f64::INFINITY), &mut random) else {
+                    continue;
+                };
                 inside += 1.0;
                 let tau = optical_thickness(volume, &ray, t).last().map_or(0.0, |&(_, tau)| tau);
                 uniform.push((1.0 - (-tau).exp()) / share);
@@ -173,7 +176,7 @@ fn ratio_tracking_has_the_transmittance_as_its_mean() {
                 continue;
             }
             let estimates: Vec<f64> =
-                (0..4000).map(|_| estimate_transmittance(volume, &ray, 1e9, &mut random)).collect();
+                (0..4000).map(|_| estimate_transmittance(volume, &ray, (0.0, 1e9), &mut random)).collect();
             let (mean, error) = mean_and_error(&estimates);
             let z = (mean - truth) / error;
             assert!(
@@ -239,7 +242,7 @@ fn segments_follow_each_other_and_their_bounds_hold() {
         let mut random = Random::new(7, 0, 0);
         for _ in 0..300 {
             let local = volume.local_ray(&ray_through(volume, &mut random));
-            let Some((enter, leave)) = volume.interval(&local, f64::INFINITY) else { continue };
+            let Some((enter, leave)) = volume.interval(&local, (0.0, f64::INFINITY)) else { continue };
             let mut reached = enter;
             let _ = grid.segments(local.origin, local.direction, (0.0, f64::INFINITY), |segment| {
                 assert!((segment.start - reached).abs() < 1e-9 && segment.end > segment.start, "{name}");

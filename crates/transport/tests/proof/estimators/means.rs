@@ -119,7 +119,7 @@ fn the_default_takes_the_closed_form_where_there_is_one_and_else_ratio_tracking(
                 TransmittanceEstimator::ClosedForm
             };
             let [mut a, mut b] = [Random::new(5, 0, 0); 2];
-            let default = estimate_transmittance(volume, &ray, 8.0, &mut a);
+            let default = estimate_transmittance(volume, &ray, (0.0, 8.0), &mut a);
             assert_eq!(default, estimator.estimate(&along, &mut b, &mut Lookups::default()), "{name}");
         }
     }

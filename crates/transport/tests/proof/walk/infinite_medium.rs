@@ -21,7 +21,7 @@ fn medium(density: Density, radius: f64, phase_function: PhaseFunction) -> Volum
 }
 
 fn fly(volume: &Volume, ray: &mut Ray, random: &mut Random) {
-    let distance = sample_distance(volume, ray, f64::INFINITY, random).expect("it is without end");
+    let distance = sample_distance(volume, ray, (0.0, f64::INFINITY), random).expect("it is without end");
     ray.origin = ray.at(distance);
 }
 
@@ -130,7 +130,7 @@ fn light_born_in_an_absorbing_ball_escapes_as_often_as_case_de_hoffmann_and_plac
                 let radius = row[0] * random.f64().cbrt();
                 let origin = random_direction(&mut random) * radius;
                 let ray = Ray { origin, direction: random_direction(&mut random) };
-                estimate_transmittance(&ball, &ray, f64::INFINITY, &mut random)
+                estimate_transmittance(&ball, &ray, (0.0, f64::INFINITY), &mut random)
             })
             .collect();
         family.add(format!("{row:?}"), row[2], 1e-9, estimate(&escapes));

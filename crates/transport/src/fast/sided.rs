@@ -1,0 +1,156 @@
+//! The part of a path that surfaces need: its rays in f64, what they meet, and which volumes are present.
+//!
+//! Surfaces are met rarely beside the steps through grids, and thin walls want all digits; so this part is the reference
+//! integrator's own, and only the tracking between surfaces runs in the pool.
+
+use glam::{DVec3, Vec3};
+use tyndall_lanes::Random;
+use tyndall_scene::surface::Presence;
+use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
+
+use super::pool::Path;
+use crate::emission::path_weight;
+use crate::surface_vertex::SurfaceVertex;
+use crate::way::{Span, Way};
+
+/// What a path knows beside its place in the pool, in scenes with surfaces or volumes that glow.
+#[derive(Debug, Clone)]
+pub(super) struct Sided {
+    /// The path's own ray.
+    pub ray: Ray,
+    /// The volumes that are present where it begins.
+    pub presence: Presence,
+    /// What it meets.
+    pub way: Way,
+    /// What the shadow ray meets.
+    pub shadow: Way,
+    /// The part of the throughput that is due to refraction, which roulette leaves out.
+    pub refraction: f64,
+}
+
+/// What the next event at a vertex may bring.
+pub(super) struct Direct {
+    /// Radiance times what the vertex makes of it, over the densities; without what is in the way.
+    pub unshadowed: Vec3,
+    /// The light alone, over its density: what an even vertex without competition would bring.
+    pub arriving: Vec3,
+    pub toward: DVec3,
+    pub distance: f64,
+}
+
+impl Sided {
+    pub fn new() -> Self {
+        let ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
+        let presence = Presence::default();
+        Self { ray, presence, way: Way::nothing(), shadow: Way::nothing(), refraction: 1.0 }
+    }
+
+    /// Where the volumes are that the current ray goes through.
+    pub fn spans(&self, is_shadow: bool) -> &[Span] {
+        if is_shadow { &self.shadow.spans } else { &self.way.spans }
+    }
+
+    /// Finds what the path's ray meets.
+    pub fn look_ahead(&mut self, scene: &Scene, random: &mut Random) {
+        self.way = Way::trace(scene, &self.ray, f64::INFINITY, &self.presence, random);
+    }
+
+    /// Moves to the collision at the distance `t`.
+    pub fn collide(&mut self, scene: &Scene, t: f64) {
+        self.presence = self.way.presence_at(scene, self.ray.direction, t);
+        self.ray.origin = self.ray.at(t);
+    }
+
+    /// The surface at the end of the way.
+    pub fn vertex(&mut self, scene: &Scene, hit: &Hit) -> SurfaceVertex {
+        self.presence = self.way.presence_at(scene, self.ray.direction, hit.t);
+        SurfaceVertex::new(scene, hit, self.ray.direction, &Channels::Rgb)
+    }
+
+    /// Whether the shadow ray from a collision gets past the surfaces.
+    pub fn sees(&mut self, scene: &Scene, toward: DVec3, distance: f64, random: &mut Random) -> bool {
+        let ray = Ray { origin: self.ray.origin, direction: toward };
+        self.connect(scene, &ray, distance, &self.presence.clone(), random)
+    }
+
+    /// The same from a surface.
+    pub fn sees_from(
+        &mut self,
+        scene: &Scene,
+        vertex: &SurfaceVertex,
+        toward: DVec3,
+        distance: f64,
+        random: &mut Random,
+    ) -> bool {
+        let (ray, presence) = vertex.leave(scene, toward, &self.presence);
+        self.connect(scene, &ray, distance, &presence, random)
+    }
+
+    fn connect(
+        &mut self,
+        scene: &Scene,
+        ray: &Ray,
+        distance: f64,
+        presence: &Presence,
+        random: &mut Random,
+    ) -> bool {
+        match Way::connect(scene, ray, distance, presence, random) {
+            Some(way) => {
+                self.shadow = way;
+                true
+            }
+            None => false,
+        }
+    }
+}
+
+/// Le of the lamp that a path hits, weighted against next-event estimation.
+pub(super) fn lamp_radiance(scene: &Scene, path: &Path, direction: DVec3, hit: &Hit) -> Vec3 {
+    let Some(number) = scene.surfaces.shape(hit).light else { return Vec3::ZERO };
+    let Light::Area(lamp) = &scene.lights[number] else { return Vec3::ZERO };
+    let radiance = lamp.radiance_from(hit.normal, direction);
+    let weight = match path.turned {
+        Some(from) => {
+            let light_pdf = lamp.pdf_of_hit(from, direction, hit.position, hit.normal);
+            let turn_pdf = f64::from(path.turn_pdf);
+            turn_pdf / (turn_pdf + scene.light_probability(number, from) * light_pdf)
+        }
+        None => 1.0,
+    };
+    (radiance * weight).as_vec3()
+}
+
+/// Draws a light for a vertex at `from`, of which `value` gives f or the phase function and the density of the path there.
+pub(super) fn draw_light(
+    scene: &Scene,
+    from: DVec3,
+    value: impl Fn(DVec3) -> (DVec3, f64),
+    random: &mut Random,
+) -> Option<Direct> {
+    let (number, probability) = scene.choose_light(from, random.f64())?;
+    let light = &scene.lights[number];
+    if let Light::Volume(glow) = light {
+        let sample = glow.sample(from, [random.f64(), random.f64(), random.f64()]);
+        let offset = sample.position - from;
+        let distance = offset.length();
+        if distance == 0.0 || sample.pdf_volume <= 0.0 {
+            return None;
+        }
+        let toward = offset / distance;
+        let (value, path_pdf) = value(toward);
+        let weight = 1.0 - path_weight(scene, glow.volume(), from, sample.position, path_pdf);
+        let source = crate::emission::source_at(&scene.volumes[glow.volume()], sample.position, toward);
+        let density = distance * distance * sample.pdf_volume * probability;
+        let arriving = source / density;
+        let unshadowed = (value * arriving * weight).as_vec3();
+        return Some(Direct { unshadowed, arriving: arriving.as_vec3(), toward, distance });
+    }
+    let sample = light.sample(from, [random.f64(), random.f64()]);
+    let (value, path_pdf) = value(sample.toward);
+    let light_pdf = probability * sample.pdf;
+    let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + path_pdf) };
+    let arriving = sample.radiance_over_pdf / probability;
+    let unshadowed = (value * arriving * weight).as_vec3();
+    let (arriving, toward) = (arriving.as_vec3(), sample.toward);
+    Some(Direct { unshadowed, arriving, toward, distance: sample.distance })
+}

@@ -1,0 +1,60 @@
+//! A path's contributions, in three colours or four channels, by what made them.
+
+use std::ops::{Add, AddAssign};
+
+use glam::DVec3;
+use tyndall_film::Sample;
+
+/// A path's contributions in the channels `C`.
+#[derive(Debug, Default)]
+pub(crate) struct PathLayers<C> {
+    /// What media sent out.
+    pub emission: C,
+    /// What the camera ray met first.
+    pub first: Option<FirstMet>,
+    background: C,
+    single: C,
+    multiple: C,
+}
+
+/// What a camera ray meets first: a collision, or a surface.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct FirstMet {
+    /// Its distance.
+    pub distance: f64,
+    /// Its albedo.
+    pub albedo: DVec3,
+    /// Normal of the surface; 0 of a collision.
+    pub normal: DVec3,
+    /// Number of the surface's object; 0 of a collision.
+    pub object: u32,
+}
+
+impl<C: Copy + Add<Output = C> + AddAssign> PathLayers<C> {
+    /// Adds light that media have scattered so many times.
+    pub fn add(&mut self, scatterings: u32, radiance: C) {
+        match scatterings {
+            0 => self.background += radiance,
+            1 => self.single += radiance,
+            _ => self.multiple += radiance,
+        }
+    }
+
+    /// The film's sample; `colour` makes the film's three channels of the path's.
+    pub fn into_sample(self, colour: impl Fn(C) -> DVec3) -> Sample {
+        let colour = |channels: C| colour(channels).as_vec3().to_array();
+        let first = self.first.unwrap_or_default();
+        Sample {
+            radiance: colour(self.background + self.emission + self.single + self.multiple),
+            hit: self.first.is_some(),
+            depth: first.distance as f32,
+            albedo: first.albedo.as_vec3().to_array(),
+            emission: colour(self.emission),
+            single: colour(self.single),
+            multiple: colour(self.multiple),
+            normal: first.normal.as_vec3().to_array(),
+            object: first.object,
+            ..Sample::default()
+        }
+    }
+}
