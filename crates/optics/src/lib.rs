@@ -1,4 +1,4 @@
-//! What participating media do to light at a point: phase functions, coefficients, spectra and colour. Knows no
+//! What media and surfaces do to light at a point: phase functions, BSDFs, coefficients, spectra and colour. Knows no
 //! geometry.
 
 #![forbid(unsafe_code)]
@@ -6,6 +6,8 @@
 pub mod albedo_inversion;
 pub mod bsdf;
 pub mod cie;
+mod dielectrics;
+mod metals;
 pub mod mie;
 pub mod phase_function;
 pub mod planck;
@@ -14,6 +16,8 @@ pub mod refractive_index;
 mod spectrum;
 pub mod uplift;
 
+pub use dielectrics::{dielectric_index, dielectric_names};
+pub use metals::{Metal, metal};
 pub use phase_function::{PhaseFunction, SpectralPhase};
 pub use refractive_index::{Material, RefractiveIndex, RefractiveIndexTable, Substance};
 pub use spectrum::{Spectrum, SpectrumError};

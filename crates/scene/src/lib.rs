@@ -23,6 +23,7 @@ pub mod procedural;
 mod ready;
 pub mod sky;
 mod spectra;
+mod suggestion;
 pub mod surface;
 mod toml;
 

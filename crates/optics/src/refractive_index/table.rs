@@ -75,6 +75,11 @@ impl RefractiveIndexTable {
         Ok(Self { rows })
     }
 
+    /// Wavelengths in nm, increasing, with the index at each.
+    pub fn rows(&self) -> impl Iterator<Item = (f64, RefractiveIndex)> + '_ {
+        self.rows.iter().copied()
+    }
+
     /// First and last wavelength, nm.
     pub fn range(&self) -> [f64; 2] {
         [self.rows[0].0, self.rows[self.rows.len() - 1].0]

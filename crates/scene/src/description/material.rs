@@ -106,6 +106,10 @@ pub enum MaterialDescription {
         /// Factor on what the coat reflects.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         reflection_tint: Option<TextureDescription>,
+        /// Whether light that goes to and fro under the coat takes the base's colour each time, as in nature: colours are
+        /// deeper and darker. Otherwise the base looks as bright as its reflectance says.
+        #[serde(default, skip_serializing_if = "super::is_default")]
+        nonlinear: bool,
     },
     /// Two materials side by side, as a fine mosaic. With `null` as the first, `amount` is an opacity.
     Mix {
@@ -118,16 +122,81 @@ pub enum MaterialDescription {
     Null,
 }
 
+impl MaterialDescription {
+    /// What it takes from place to place, by key.
+    pub fn textures(&self) -> Vec<(&'static str, &TextureDescription)> {
+        let given: Vec<(&'static str, Option<&TextureDescription>)> = match self {
+            Self::Diffuse { reflectance } | Self::RoughDiffuse { reflectance, .. } => {
+                vec![("reflectance", Some(reflectance))]
+            }
+            Self::Conductor { tint, .. } => vec![("tint", tint.as_ref())],
+            Self::Dielectric { reflection_tint, transmission_tint, .. }
+            | Self::ThinDielectric { reflection_tint, transmission_tint, .. } => vec![
+                ("reflection_tint", reflection_tint.as_ref()),
+                ("transmission_tint", transmission_tint.as_ref()),
+            ],
+            Self::Plastic { reflectance, reflection_tint, .. } => {
+                vec![("reflectance", Some(reflectance)), ("reflection_tint", reflection_tint.as_ref())]
+            }
+            Self::Mix { amount, .. } => vec![("amount", Some(amount))],
+            Self::Null => vec![],
+        };
+        given.into_iter().filter_map(|(key, texture)| texture.map(|texture| (key, texture))).collect()
+    }
+
+    /// The names of the pictures that it and the materials in it take.
+    pub fn pictures_mut(&mut self) -> Vec<&mut String> {
+        let textures = match self {
+            Self::Diffuse { reflectance } | Self::RoughDiffuse { reflectance, .. } => {
+                vec![Some(reflectance)]
+            }
+            Self::Conductor { tint, .. } => vec![tint.as_mut()],
+            Self::Dielectric { reflection_tint, transmission_tint, .. }
+            | Self::ThinDielectric { reflection_tint, transmission_tint, .. } => {
+                vec![reflection_tint.as_mut(), transmission_tint.as_mut()]
+            }
+            Self::Plastic { reflectance, reflection_tint, .. } => {
+                vec![Some(reflectance), reflection_tint.as_mut()]
+            }
+            Self::Mix { materials, amount } => {
+                let inner = materials.iter_mut().flat_map(MaterialChoice::pictures_mut);
+                return inner.chain(amount.picture_mut()).collect();
+            }
+            Self::Null => vec![],
+        };
+        textures.into_iter().flatten().filter_map(TextureDescription::picture_mut).collect()
+    }
+}
+
+impl MaterialChoice {
+    /// The names of the pictures of a material given in place.
+    pub fn pictures_mut(&mut self) -> Vec<&mut String> {
+        match self {
+            Self::Name(_) => vec![],
+            Self::Here(material) => material.pictures_mut(),
+        }
+    }
+}
+
+impl TextureDescription {
+    fn picture_mut(&mut self) -> Option<&mut String> {
+        match self {
+            Self::Image(texture) => Some(&mut texture.image),
+            Self::Constant(_) | Self::Checker(_) => None,
+        }
+    }
+}
+
 /// A quantity that may vary over a surface: a number, three numbers, a spectrum, a picture or a checkerboard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum TextureDescription {
-    /// The same everywhere.
-    Constant(SpectrumDescription),
     /// A picture.
     Image(ImageTexture),
     /// Two values in turns.
     Checker(CheckerTexture),
+    /// The same everywhere. Last, as a table with other keys would pass for a spectrum without any.
+    Constant(SpectrumDescription),
 }
 
 impl From<f64> for TextureDescription {

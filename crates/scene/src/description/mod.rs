@@ -12,6 +12,7 @@ mod files;
 mod film;
 mod lights;
 mod material;
+mod material_rules;
 mod medium;
 mod meter;
 mod meter_rules;
@@ -43,6 +44,7 @@ pub use material::{
     CheckerTexture, ImageTexture, IndexChoice, MaterialChoice, MaterialDescription, NamedMaterial, Roughness,
     TextureDescription, TextureWrap,
 };
+pub(crate) use material_rules::{material_of_name, no_metal, no_substance};
 pub use medium::MediumDescription;
 pub use meter::{
     BodyMeterDescription, Channel, IrradianceMeterDescription, LayerMeterDescription, MeterDescription,

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::material_rules::materials;
 use super::meter_rules::meters;
 use super::shape_rules::shapes;
 use super::{
@@ -36,6 +37,7 @@ impl SceneDescription {
                 found.within(&index.to_string(), |found| volume(found, description, &self.unit))
             });
         }
+        materials(&mut found, self);
         for (index, description) in self.lights.iter().enumerate() {
             found
                 .within("light", |found| found.within(&index.to_string(), |found| light(found, description)));

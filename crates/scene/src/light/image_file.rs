@@ -47,9 +47,10 @@ pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), Sce
     Ok((image, warning))
 }
 
-type Texels = (usize, usize, Vec<[f32; 3]>);
+/// Columns, rows, and the texels row by row from the top.
+pub(crate) type Texels = (usize, usize, Vec<[f32; 3]>);
 
-fn read_exr(mut file: BufReader<File>, length: u64) -> Result<Texels, String> {
+pub(crate) fn read_exr(mut file: BufReader<File>, length: u64) -> Result<Texels, String> {
     let damaged = |error: exr::error::Error| match error {
         exr::error::Error::NotSupported(what) => format!("uses an OpenEXR feature that is not read: {what}"),
         other => format!("damaged OpenEXR picture: {other}"),
@@ -88,7 +89,7 @@ fn read_exr(mut file: BufReader<File>, length: u64) -> Result<Texels, String> {
     Ok((size.0, size.1, picture.layer_data.channel_data.pixels.1))
 }
 
-fn read_hdr(file: BufReader<File>, length: u64) -> Result<Texels, String> {
+pub(crate) fn read_hdr(file: BufReader<File>, length: u64) -> Result<Texels, String> {
     let damaged = |error: image::ImageError| format!("damaged Radiance picture: {error}");
     let decoder = image::codecs::hdr::HdrDecoder::new(file).map_err(damaged)?;
     let (width, height) = decoder.dimensions();
@@ -97,7 +98,7 @@ fn read_hdr(file: BufReader<File>, length: u64) -> Result<Texels, String> {
     Ok((width as usize, height as usize, picture.pixels().map(|pixel| pixel.0).collect()))
 }
 
-fn check_size(width: u64, height: u64, length: u64) -> Result<(), String> {
+pub(crate) fn check_size(width: u64, height: u64, length: u64) -> Result<(), String> {
     match width.checked_mul(height) {
         Some(texels) if texels > GREATEST_TEXELS => {
             Err(format!("has {width} x {height} texels; more than 268 million are not read: scale it down"))

@@ -12,7 +12,7 @@ mod constant;
 mod distant;
 mod equirectangular;
 mod image;
-mod image_file;
+pub(crate) mod image_file;
 mod point;
 mod spherical_rectangle;
 mod spot;

@@ -2,6 +2,7 @@
 
 mod boundaries;
 mod build;
+mod build_material;
 mod bvh;
 mod closed;
 mod cuboid;
@@ -10,10 +11,12 @@ mod disc;
 mod local;
 mod material;
 mod mesh;
+mod picture;
 mod pieces;
 mod placed;
 mod sphere;
 mod square;
+mod texture;
 mod triangle;
 mod triangle_mesh;
 mod world_primitive;
@@ -22,11 +25,14 @@ use glam::DVec3;
 
 pub use self::boundaries::{Boundaries, Presence};
 pub(crate) use self::build::{VolumeNumber, build_surfaces, numbers_of};
+pub use self::build_material::MaterialBuilder;
+pub(crate) use self::build_material::{MOST_PARTS, conductor_index};
 use self::bvh::Bvh;
-use self::placed::Placed;
-
-pub use self::material::Material;
+pub use self::material::{ConductorIndex, Material};
 pub use self::mesh::{Mesh, read_mesh, write_ply};
+pub use self::picture::Picture;
+use self::placed::Placed;
+pub use self::texture::{Colour, ImageLookup, Placement, Texture};
 pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
 

@@ -1,35 +1,52 @@
 //! Holds a tree of values against the JSON schema and says everything that is wrong, in words.
 //!
 //! Only what [`json_schema`](super::json_schema) generates is understood: objects with known properties,
-//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, and
-//! `anyOf` of different kinds of values.
+//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, `anyOf` of different
+//! kinds of values, and references to `$defs` by what holds itself.
 
 use serde_json::Value as Schema;
 
 use super::tree::{Entry, Node, Place, Value};
 use crate::error::Problem;
+use crate::suggestion::{did_you_mean, list_of, nearest};
 
 /// Greatest magnitude of any number: products of a few such numbers stay finite in double precision.
 const GREATEST: f64 = 1e30;
 
 /// Everything in `node`, which messages call `name`, that the schema does not allow.
 pub(crate) fn problems(node: &Node, name: &str, schema: &Schema) -> Vec<Problem> {
-    let mut check = Check { problems: Vec::new() };
+    let mut check = Check { schema, problems: Vec::new() };
     check.value(node, name, schema);
     check.problems
 }
 
-struct Check {
+struct Check<'a> {
+    /// All of it.
+    schema: &'a Schema,
     problems: Vec<Problem>,
 }
 
-impl Check {
+impl<'a> Check<'a> {
+    /// What a reference stands for.
+    fn definition(&self, schema: &'a Schema) -> &'a Schema {
+        let name = schema.get("$ref").and_then(Schema::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
+        name.and_then(|name| self.schema.get("$defs")?.get(name)).unwrap_or(schema)
+    }
+
+    /// Whether a value is of the kind, or one of the kinds, that a schema is about.
+    fn is_kind(&self, value: &Value, schema: &'a Schema) -> bool {
+        let schema = self.definition(schema);
+        let is_any = |branches: &'a Vec<Schema>| branches.iter().any(|branch| self.is_kind(value, branch));
+        is_kind(value, kind_of(schema)) || branches_of(schema).is_some_and(is_any)
+    }
+
     fn report(&mut self, place: &Place, message: String) {
         self.problems.push(place.problem(message));
     }
 
     /// `name` is what messages call the value.
-    fn value(&mut self, node: &Node, name: &str, schema: &Schema) {
+    fn value(&mut self, node: &Node, name: &str, schema: &'a Schema) {
+        let schema = self.definition(schema);
         if let Some(words) = words_of(schema) {
             return self.word(node, name, &words);
         }
@@ -37,7 +54,7 @@ impl Check {
             if branches.iter().any(|branch| tag_of(branch).is_some()) {
                 return self.tagged_table(node, name, branches);
             }
-            return match branches.iter().find(|branch| is_kind(&node.value, kind_of(branch))) {
+            return match self.branch_for(&node.value, branches) {
                 Some(branch) => self.value(node, name, branch),
                 None => self.wrong_kind(node, name, schema),
             };
@@ -52,6 +69,18 @@ impl Check {
             Value::Table(entries) => self.table(node, name, entries, schema),
             Value::String(_) | Value::Boolean(_) | Value::Datetime => {}
         }
+    }
+
+    /// The branch that is about such a value; of tables the one that knows most of the keys.
+    fn branch_for(&self, value: &Value, branches: &'a [Schema]) -> Option<&'a Schema> {
+        let known = |branch: &'a Schema| match (value, self.definition(branch).get("properties")) {
+            (Value::Table(entries), Some(keys)) => {
+                entries.iter().filter(|entry| keys.get(&entry.key).is_some()).count()
+            }
+            _ => 0,
+        };
+        // Of equals, the last is the greatest to `max_by_key`, and the first is meant.
+        branches.iter().rev().filter(|branch| self.is_kind(value, branch)).max_by_key(|branch| known(branch))
     }
 
     fn wrong_kind(&mut self, node: &Node, name: &str, schema: &Schema) {
@@ -96,7 +125,7 @@ impl Check {
         }
     }
 
-    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &Schema) {
+    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &'a Schema) {
         let length = |key: &str| schema.get(key).and_then(Schema::as_u64);
         let is_fitting = length("minItems").is_none_or(|least| items.len() as u64 >= least)
             && length("maxItems").is_none_or(|most| items.len() as u64 <= most);
@@ -104,7 +133,7 @@ impl Check {
             let message = format!("{name} must be {}, not {} of them", expected(schema), items.len());
             return self.report(&node.place, message);
         }
-        let Some(item_schema) = schema.get("items") else { return };
+        let Some(item_schema) = schema.get("items").map(|items| self.definition(items)) else { return };
         let is_array_of_tables = kind_of(item_schema) == "object" || branches_of(item_schema).is_some();
         for (index, item) in items.iter().enumerate() {
             let item_name = if is_array_of_tables {
@@ -116,7 +145,7 @@ impl Check {
         }
     }
 
-    fn tagged_table(&mut self, node: &Node, name: &str, branches: &[Schema]) {
+    fn tagged_table(&mut self, node: &Node, name: &str, branches: &'a [Schema]) {
         let Value::Table(entries) = &node.value else {
             let message = format!("{name} must be a table with a `type`, not {}", kind_in_words(&node.value));
             return self.report(&node.place, message);
@@ -138,7 +167,7 @@ impl Check {
         }
     }
 
-    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &Schema) {
+    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &'a Schema) {
         let Some(properties) = schema.get("properties").and_then(Schema::as_object) else { return };
         let mut has_unknown = false;
         for entry in entries {
@@ -286,27 +315,4 @@ fn range_in_words(schema: &Schema) -> String {
         // No other pair of bounds is in the schema.
         _ => " within its range".to_owned(),
     }
-}
-
-/// `, did you mean …?`, or what there is to choose from.
-fn did_you_mean<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> String {
-    let choices: Vec<&str> = choices.collect();
-    match nearest(word, choices.iter().copied()) {
-        Some(choice) => format!(", did you mean `{choice}`?"),
-        None if choices.is_empty() => String::new(),
-        None => format!("; there is {}", list_of(choices)),
-    }
-}
-
-/// The choice that differs least from `word`, in a third of the letters at most.
-fn nearest<'a>(word: &str, choices: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    choices
-        .map(|choice| (strsim::damerau_levenshtein(&word.to_lowercase(), choice), choice))
-        .min_by_key(|(distance, _)| *distance)
-        .filter(|(distance, choice)| 3 * distance <= word.chars().count().max(choice.len()))
-        .map(|(_, choice)| choice)
-}
-
-fn list_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
