@@ -212,12 +212,13 @@ impl TextureDescription {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum TextureDescription {
-    /// The same everywhere.
-    Constant(SpectrumDescription),
-    /// A picture.
+    /// A picture. It and the checkerboard come first: they are known by a key that they need, which spectra, having none,
+    /// would leave aside.
     Image(ImageTexture),
     /// Two values in turns.
     Checker(CheckerTexture),
+    /// The same everywhere.
+    Constant(SpectrumDescription),
 }
 
 impl From<f64> for TextureDescription {
