@@ -278,16 +278,16 @@ fn what_is_wrong_with_a_material_is_said_where_it_stands() {
         ("type = \"conductor\"", "scene.toml:4:1: the conductor has no refractive index"),
         (
             "type = \"conductor\"\nmetal = \"coper\"",
-            "scene.toml:7:9: there is no measured metal `coper`, did you mean `copper`?",
+            "scene.toml:7:1: there is no measured metal `coper`, did you mean `copper`?",
         ),
         (
             "type = \"conductor\"\nmetal = \"gold\"\nreflectance = 1",
-            "scene.toml:8:15: the conductor is given in several ways",
+            "scene.toml:8:1: the conductor is given in several ways",
         ),
-        ("type = \"conductor\"\neta = 1", "scene.toml:7:7: `eta` and `k` belong together"),
+        ("type = \"conductor\"\neta = 1", "scene.toml:7:1: `eta` and `k` belong together"),
         (
             "type = \"dielectric\"\nindex = \"watr\"",
-            "scene.toml:7:9: there is no substance `watr`, did you mean `water`?",
+            "scene.toml:7:1: there is no substance `watr`, did you mean `water`?",
         ),
         ("type = \"dielectric\"\nindex = 0.001", "`index` must be from 0.01 to 100"),
         ("type = \"dielectric\"\nindex = 0", "above 0"),
@@ -301,7 +301,7 @@ fn what_is_wrong_with_a_material_is_said_where_it_stands() {
         ),
         (
             "type = \"mix\"\nmaterials = [\"is\", { type = \"null\" }]\namount = 0.5",
-            "there is no material `is`, did you mean `it`?",
+            "there is no material `is`; there is `it`",
         ),
         (
             "type = \"mix\"\nmaterials = [{ type = \"conductor\", eta = 2 }, { type = \"null\" }]\namount = 0.5",

@@ -10,7 +10,7 @@ fn placement() -> impl Strategy<Value = (Option<[f64; 2]>, Option<[f64; 2]>)> {
     (of([number(), number()]), of([number(), number()]))
 }
 
-fn texture() -> impl Strategy<Value = TextureDescription> {
+fn texture() -> BoxedStrategy<TextureDescription> {
     let wrap = prop_oneof![Just(TextureWrap::Repeat), Just(TextureWrap::Clamp), Just(TextureWrap::Mirror)];
     let filter = prop_oneof![Just(ImageFilter::Bilinear), Just(ImageFilter::Nearest)];
     let image = (words(), of(any::<bool>()), filter, wrap, placement(), of(positive())).prop_map(
@@ -22,7 +22,7 @@ fn texture() -> impl Strategy<Value = TextureDescription> {
     let checker = ([colours(1.0), colours(1.0)], placement()).prop_map(|(checker, (scale, offset))| {
         TextureDescription::Checker(CheckerTexture { checker, scale, offset })
     });
-    prop_oneof![colours(1.0).prop_map(TextureDescription::Constant), image, checker]
+    prop_oneof![colours(1.0).prop_map(TextureDescription::Constant), image, checker].boxed()
 }
 
 fn roughness() -> impl Strategy<Value = Option<Roughness>> {
@@ -38,7 +38,7 @@ fn index() -> impl Strategy<Value = IndexChoice> {
     ]
 }
 
-fn conductor() -> impl Strategy<Value = MaterialDescription> {
+fn conductor() -> BoxedStrategy<MaterialDescription> {
     let none = |metal, eta, k, reflectance| MaterialDescription::Conductor {
         metal,
         eta,
@@ -57,16 +57,18 @@ fn conductor() -> impl Strategy<Value = MaterialDescription> {
         (colours(9.0), colours(9.0)).prop_map(move |(eta, k)| none(None, Some(eta), Some(k), None)),
         colours(1.0).prop_map(move |reflectance| none(None, None, None, Some(reflectance))),
     ];
-    (index, roughness(), of(texture())).prop_map(|(mut conductor, rough, factor)| {
-        if let MaterialDescription::Conductor { roughness, tint, .. } = &mut conductor {
-            (*roughness, *tint) = (rough, factor);
-        }
-        conductor
-    })
+    (index, roughness(), of(texture()))
+        .prop_map(|(mut conductor, rough, factor)| {
+            if let MaterialDescription::Conductor { roughness, tint, .. } = &mut conductor {
+                (*roughness, *tint) = (rough, factor);
+            }
+            conductor
+        })
+        .boxed()
 }
 
 /// A material that is no mixture by name.
-pub fn material() -> impl Strategy<Value = MaterialDescription> {
+pub fn material() -> BoxedStrategy<MaterialDescription> {
     let simple = prop_oneof![
         texture().prop_map(|reflectance| MaterialDescription::Diffuse { reflectance }),
         (texture(), within(0.0, 90.0))
@@ -94,29 +96,32 @@ pub fn material() -> impl Strategy<Value = MaterialDescription> {
         ),
         Just(MaterialDescription::Null),
     ];
-    simple.prop_recursive(2, 4, 2, |inner| {
-        (inner.clone(), inner, texture()).prop_map(|(first, second, amount)| MaterialDescription::Mix {
-            materials: [first, second].map(|part| MaterialChoice::Here(Box::new(part))),
-            amount,
-        })
-    })
+    // In boxes, since a strategy of so many parts is too large for the stack.
+    let simple = simple.boxed();
+    let mixed = (simple.clone(), simple.clone(), texture()).prop_map(|(first, second, amount)| {
+        let materials = [first, second].map(|part| MaterialChoice::Here(Box::new(part)));
+        MaterialDescription::Mix { materials, amount }
+    });
+    prop_oneof![4 => simple, 1 => mixed].boxed()
 }
 
 /// Materials of different names, each of which may be mixed of those before it.
-pub fn named_materials() -> impl Strategy<Value = Vec<NamedMaterial>> {
-    proptest::collection::vec((words(), material(), of(texture())), 0..3).prop_map(|parts| {
-        let mut named: Vec<NamedMaterial> = Vec::new();
-        for (number, (name, material, amount)) in parts.into_iter().enumerate() {
-            let material = match (amount, named.last()) {
-                (Some(amount), Some(before)) => {
-                    let first = MaterialChoice::Name(before.name.clone());
-                    let materials = [first, MaterialChoice::Here(Box::new(material))];
-                    MaterialDescription::Mix { materials, amount }
-                }
-                _ => material,
-            };
-            named.push(NamedMaterial { name: format!("{name}{number}"), material });
-        }
-        named
-    })
+pub fn named_materials() -> BoxedStrategy<Vec<NamedMaterial>> {
+    proptest::collection::vec((words(), material(), of(texture())), 0..3)
+        .prop_map(|parts| {
+            let mut named: Vec<NamedMaterial> = Vec::new();
+            for (number, (name, material, amount)) in parts.into_iter().enumerate() {
+                let material = match (amount, named.last()) {
+                    (Some(amount), Some(before)) => {
+                        let first = MaterialChoice::Name(before.name.clone());
+                        let materials = [first, MaterialChoice::Here(Box::new(material))];
+                        MaterialDescription::Mix { materials, amount }
+                    }
+                    _ => material,
+                };
+                named.push(NamedMaterial { name: format!("{name}{number}"), material });
+            }
+            named
+        })
+        .boxed()
 }
