@@ -212,12 +212,13 @@ impl TextureDescription {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum TextureDescription {
-    /// The same everywhere.
-    Constant(SpectrumDescription),
+    // First what has a key of its own: all keys of a spectrum can be absent.
     /// A picture.
     Image(ImageTexture),
     /// Two values in turns.
     Checker(CheckerTexture),
+    /// The same everywhere.
+    Constant(SpectrumDescription),
 }
 
 impl From<f64> for TextureDescription {

@@ -15,22 +15,31 @@ const GREATEST: f64 = 1e30;
 
 /// Everything in `node`, which messages call `name`, that the schema does not allow.
 pub(crate) fn problems(node: &Node, name: &str, schema: &Schema) -> Vec<Problem> {
-    let mut check = Check { problems: Vec::new() };
+    let mut check = Check { root: schema, problems: Vec::new() };
     check.value(node, name, schema);
     check.problems
 }
 
-struct Check {
+struct Check<'a> {
+    /// What references in the schema are relative to.
+    root: &'a Schema,
     problems: Vec<Problem>,
 }
 
-impl Check {
+impl<'a> Check<'a> {
+    /// The schema itself, if it is referred to: that of a table which may hold others like it.
+    fn resolved(&self, schema: &'a Schema) -> &'a Schema {
+        let place = schema.get("$ref").and_then(Schema::as_str).and_then(|place| place.strip_prefix('#'));
+        place.and_then(|place| self.root.pointer(place)).unwrap_or(schema)
+    }
+
     fn report(&mut self, place: &Place, message: String) {
         self.problems.push(place.problem(message));
     }
 
     /// `name` is what messages call the value.
-    fn value(&mut self, node: &Node, name: &str, schema: &Schema) {
+    fn value(&mut self, node: &Node, name: &str, schema: &'a Schema) {
+        let schema = self.resolved(schema);
         if let Some(words) = words_of(schema) {
             return self.word(node, name, &words);
         }
@@ -38,7 +47,8 @@ impl Check {
             if branches.iter().any(|branch| tag_of(branch).is_some()) {
                 return self.tagged_table(node, name, branches);
             }
-            let fitting = branches.iter().filter(|branch| is_kind(&node.value, kind_of(branch)));
+            let branches = branches.iter().map(|branch| self.resolved(branch));
+            let fitting = branches.filter(|branch| is_kind(&node.value, kind_of(branch)));
             // Of several kinds of tables the one that knows most of the keys; the first if all know as many.
             return match fitting.rev().max_by_key(|branch| known_keys(&node.value, branch)) {
                 Some(branch) => self.value(node, name, branch),
@@ -99,7 +109,7 @@ impl Check {
         }
     }
 
-    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &Schema) {
+    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &'a Schema) {
         let length = |key: &str| schema.get(key).and_then(Schema::as_u64);
         let is_fitting = length("minItems").is_none_or(|least| items.len() as u64 >= least)
             && length("maxItems").is_none_or(|most| items.len() as u64 <= most);
@@ -119,7 +129,7 @@ impl Check {
         }
     }
 
-    fn tagged_table(&mut self, node: &Node, name: &str, branches: &[Schema]) {
+    fn tagged_table(&mut self, node: &Node, name: &str, branches: &'a [Schema]) {
         let Value::Table(entries) = &node.value else {
             let message = format!("{name} must be a table with a `type`, not {}", kind_in_words(&node.value));
             return self.report(&node.place, message);
@@ -141,7 +151,7 @@ impl Check {
         }
     }
 
-    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &Schema) {
+    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &'a Schema) {
         let Some(properties) = schema.get("properties").and_then(Schema::as_object) else { return };
         let mut has_unknown = false;
         for entry in entries {
@@ -284,6 +294,7 @@ fn expected(schema: &Schema) -> String {
             }
         }
         "object" => "a table".to_owned(),
+        _ if schema.get("$ref").is_some() => "a table with a `type`".to_owned(),
         _ => "something else".to_owned(),
     }
 }
