@@ -212,12 +212,11 @@ impl TextureDescription {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum TextureDescription {
-    // First what has a key of its own: all keys of a spectrum can be absent.
     /// A picture.
     Image(ImageTexture),
     /// Two values in turns.
     Checker(CheckerTexture),
-    /// The same everywhere.
+    /// The same everywhere. Last, as a table with other keys would pass for a spectrum without any.
     Constant(SpectrumDescription),
 }
 
