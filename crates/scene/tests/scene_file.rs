@@ -213,7 +213,7 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         ),
         (
             "[[volume]]\nmu_t = 1\nalbedo = 1".to_owned(),
-            "scene.toml:4:1: the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`",
+            "scene.toml:4:1: the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`, or a [[shape]] with its `name` for `interior`",
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 1\nslab = {{ bottom = 0, top = 1 }}"),
@@ -234,7 +234,7 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         (
             "[[light]]\ntype = 'stars'".to_owned(),
             "scene.toml:5:8: unknown type `stars` of [[light]]; there is `constant`, `image`, `sky`, `sun`, \
-             `distant`, `point`",
+             `distant`, `point`, `spot`",
         ),
         (
             "[light]\ntype = 'sky'".to_owned(),
@@ -325,9 +325,9 @@ fn columns_count_characters() {
         ),
         [
             "scene.toml:2:54: unknown key `µ` in [camera]; there is `aperture_radius`, `direction`, \
-             `focus_distance`, `up`, `vertical_fov`",
+             `focus_distance`, `height`, `inside`, `projection`, `up`, `vertical_fov`, `window`",
             "scene.toml:2:63: unknown key `roll` in [camera]; there is `aperture_radius`, `direction`, \
-             `focus_distance`, `up`, `vertical_fov`",
+             `focus_distance`, `height`, `inside`, `projection`, `up`, `vertical_fov`, `window`",
         ]
     );
 }
