@@ -237,6 +237,20 @@ fn every_mistake_is_named_with_its_place_and_mend() {
              `distant`, `point`, `spot`",
         ),
         (
+            "[[light]]\ntype = 'spot'\nposition = [0, 1, 0]\ndirection = [0, 0, 0]\nintensity = 1\nangle = 30".to_owned(),
+            "scene.toml:7:1: `direction` is a direction and must not be [0, 0, 0]",
+        ),
+        (
+            "[[light]]\ntype = 'spot'\nposition = [0, 1, 0]\ndirection = [0, -1, 0]\nintensity = 1\nangle = 30\n\
+             inner_angle = 31".to_owned(),
+            "scene.toml:10:1: `inner_angle` must not be greater than `angle`, the edge of the cone",
+        ),
+        (
+            "[[light]]\ntype = 'image'\nfile = 'sky.exr'\norientation = [2, 0, 0, 0, 1, 0, 0, 0, 1]".to_owned(),
+            "scene.toml:7:1: `orientation` must be a rotation, mirrored or not: three rows of length 1 at right angles to \
+             each other",
+        ),
+        (
             "[light]\ntype = 'sky'".to_owned(),
             "scene.toml:4:1: [[light]] must be an array of tables, not a table",
         ),

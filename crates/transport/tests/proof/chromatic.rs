@@ -317,7 +317,7 @@ fn channels_a_hundred_times_apart_make_no_outliers() {
     let factors = DVec3::new(0.1, 1.0, 10.0);
     let g = Some([0.9, 0.0, -0.5]);
     let mut crowd = crowd();
-    crowd.light_probabilities = vec![0.0; 5];
+    crowd.set_light_probabilities(vec![0.0; 5]);
     crowd.lights.remove(0);
     let moments = |scene: &Scene| {
         let spectral = SpectralScene::new(scene, Channels::Rgb);
