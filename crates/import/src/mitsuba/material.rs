@@ -40,9 +40,6 @@ const INDICES: [(&str, f64); 21] = [
 /// The rest of them.
 const MORE_INDICES: [(&str, f64); 2] = [("pet", 1.575), ("diamond", 2.419)];
 
-/// Metals whose indices Tyndall knows, by the names of Mitsuba's documentation.
-const METALS: [&str; 6] = ["Ag", "Al", "Au", "Cr", "Cu", "W"];
-
 /// Where a material is used.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Use {
@@ -158,8 +155,8 @@ impl<'a> Importer<'a> {
             k = Some(self.spectrum(object, "k", Role::Coefficient, 1.0)?);
         } else if material == "none" {
             reflectance = Some(1.0.into());
-        } else if let Some(known) = METALS.iter().find(|name| name.eq_ignore_ascii_case(&material)) {
-            metal = Some((*known).to_owned());
+        } else if tyndall_optics::metal(&material).is_some() {
+            metal = Some(material);
         } else {
             let message = format!("the metal `{}` is not known: aluminium is taken", excerpt(&material));
             self.unsupported(&object.place, message);
