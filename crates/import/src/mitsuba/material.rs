@@ -65,7 +65,7 @@ impl<'a> Importer<'a> {
             return Ok(MaterialChoice::Name(name.clone()));
         }
         let material = self.within(number, |importer| importer.bsdf(object, usage))?;
-        let parts = self.parts(&material);
+        let parts = self.count_parts(&material);
         if parts > PARTS {
             let message = format!("{} is mixed of more than {PARTS} parts: mix fewer", object.title());
             return Err(object.place.error(message));
@@ -146,11 +146,11 @@ impl<'a> Importer<'a> {
     }
 
     /// Number of materials that are no mixtures in one that may be.
-    fn parts(&self, material: &MaterialDescription) -> usize {
+    fn count_parts(&self, material: &MaterialDescription) -> usize {
         let MaterialDescription::Mix { materials, .. } = material else { return 1 };
         let count = |choice: &MaterialChoice| match choice {
             MaterialChoice::Name(name) => self.material_parts.get(name).copied().unwrap_or(1),
-            MaterialChoice::Here(material) => self.parts(material),
+            MaterialChoice::Here(material) => self.count_parts(material),
         };
         materials.iter().map(count).sum()
     }
