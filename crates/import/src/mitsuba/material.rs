@@ -40,8 +40,8 @@ const INDICES: [(&str, f64); 21] = [
 /// The rest of them.
 const MORE_INDICES: [(&str, f64); 2] = [("pet", 1.575), ("diamond", 2.419)];
 
-/// Metals whose indices Tyndall knows, by the names of Mitsuba's documentation.
-const METALS: [&str; 6] = ["Ag", "Al", "Au", "Cr", "Cu", "W"];
+/// Greatest number of materials in a mixture.
+const PARTS: usize = 256;
 
 /// Where a material is used.
 #[derive(Debug, Clone, Copy)]
@@ -65,9 +65,15 @@ impl<'a> Importer<'a> {
             return Ok(MaterialChoice::Name(name.clone()));
         }
         let material = self.within(number, |importer| importer.bsdf(object, usage))?;
+        let parts = self.count_parts(&material);
+        if parts > PARTS {
+            let message = format!("{} is mixed of more than {PARTS} parts: mix fewer", object.title());
+            return Err(object.place.error(message));
+        }
         let name = self.name(object);
         self.materials.push(NamedMaterial { name: name.clone(), material });
         self.named_materials.insert((number, usage.flipped), name.clone());
+        self.material_parts.insert(name.clone(), parts);
         Ok(MaterialChoice::Name(name))
     }
 
@@ -139,6 +145,16 @@ impl<'a> Importer<'a> {
         Ok(description)
     }
 
+    /// Number of materials that are no mixtures in one that may be.
+    fn count_parts(&self, material: &MaterialDescription) -> usize {
+        let MaterialDescription::Mix { materials, .. } = material else { return 1 };
+        let count = |choice: &MaterialChoice| match choice {
+            MaterialChoice::Name(name) => self.material_parts.get(name).copied().unwrap_or(1),
+            MaterialChoice::Here(material) => self.count_parts(material),
+        };
+        materials.iter().map(count).sum()
+    }
+
     fn diffuse(&mut self, object: &'a Object, usage: Use) -> Result<MaterialDescription, ImportError> {
         let reflectance = self.texture(object, "reflectance", 0.5, usage.flipped)?;
         let is_black = matches!(&reflectance, TextureDescription::Constant(spectrum) if is_zero(spectrum));
@@ -158,8 +174,8 @@ impl<'a> Importer<'a> {
             k = Some(self.spectrum(object, "k", Role::Coefficient, 1.0)?);
         } else if material == "none" {
             reflectance = Some(1.0.into());
-        } else if let Some(known) = METALS.iter().find(|name| name.eq_ignore_ascii_case(&material)) {
-            metal = Some((*known).to_owned());
+        } else if tyndall_optics::metal(&material).is_some() {
+            metal = Some(material);
         } else {
             let message = format!("the metal `{}` is not known: aluminium is taken", excerpt(&material));
             self.unsupported(&object.place, message);
@@ -296,10 +312,11 @@ impl<'a> Importer<'a> {
 
     /// The material within another that adds nothing.
     fn taken(&mut self, object: &'a Object, usage: Use) -> Result<MaterialDescription, ImportError> {
-        self.tell_unused(object);
         let Some(number) = self.child(object, Class::Bsdf) else {
             return Err(object.place.error(format!("{} needs a <bsdf> within", object.title())));
         };
+        self.children(object, Class::Bsdf);
+        self.tell_unused(object);
         let inner = self.object(number);
         self.within(number, |importer| importer.bsdf(inner, usage))
     }
