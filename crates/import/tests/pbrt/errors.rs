@@ -52,7 +52,7 @@ fn faults_name_their_line() {
         ("WorldBegin\nScale 1 0 1\nShape \"sphere\"", 3, "flattens"),
         ("WorldBegin\nTransform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ]", 2, "not affine"),
         ("WorldBegin\nRotate 10 0 0 0", 2, "axis"),
-        ("WorldBegin\nTranslate 1 2", 2, "3 finite numbers"),
+        ("WorldBegin\nTranslate 1 2", 2, "3 numbers"),
         ("LookAt 0 0 0 0 0 0 0 1 0", 1, "camera"),
         ("Shape \"sphere\"", 1, "after `WorldBegin`"),
         ("WorldBegin\nFilm \"rgb\"", 2, "before `WorldBegin`"),

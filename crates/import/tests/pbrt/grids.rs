@@ -88,7 +88,7 @@ fn a_grid_is_cut_where_its_box_ends_unless_it_is_0_there() {
 #[test]
 fn the_transform_of_the_medium_and_that_of_the_box_are_two() {
     let grid = uniform(&[0, 15], "\"point3 p0\" [ -1 -1 -1 ] \"point3 p1\" [ 1 1 1 ]");
-    // In the medium's space the box reaches from -2 to 0 along x: half the grid.
+    // In the medium's space the box reaches from -1 to 0 along x: half the grid.
     let text = format!("AttributeBegin Translate 5 0 0 {grid} AttributeEnd Translate 4 -0.5 -0.5 {WRAPPED}");
     let scene = world(&text);
     let description = &scene.imported.description;
