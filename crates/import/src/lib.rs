@@ -8,6 +8,7 @@
 
 mod error;
 mod mesh;
+pub mod mitsuba;
 mod note;
 pub mod pbrt;
 mod sidecar;
@@ -16,6 +17,7 @@ use tyndall_scene::SceneDescription;
 
 pub use error::ImportError;
 pub use mesh::Mesh;
+pub use mitsuba::import_mitsuba;
 pub use note::{Note, NoteKind, Notes};
 pub use pbrt::import_pbrt;
 pub use sidecar::Sidecar;

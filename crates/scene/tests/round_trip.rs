@@ -7,6 +7,10 @@ use proptest::prelude::*;
 use tyndall_scene::description::*;
 use tyndall_scene::{SceneDescription, SceneDocument, scene_hash};
 
+#[path = "strategies/materials.rs"]
+mod materials;
+use materials::named_materials;
+
 /// Whole numbers, decimals and numbers with all their digits.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -321,18 +325,21 @@ fn scene() -> impl Strategy<Value = SceneDescription> {
         proptest::collection::vec(volume(), 0..3),
         proptest::collection::vec(light(), 0..3),
         proptest::collection::vec(meter(), 0..3),
+        named_materials(),
     )
-        .prop_map(|(unit, camera, (film, render), medium, volumes, lights, meters)| SceneDescription {
-            materials: Vec::new(),
-            shapes: Vec::new(),
-            unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
-            camera,
-            film,
-            render,
-            medium,
-            volumes,
-            lights,
-            meters,
+        .prop_map(|(unit, camera, (film, render), medium, volumes, lights, meters, materials)| {
+            SceneDescription {
+                materials,
+                shapes: Vec::new(),
+                unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
+                camera,
+                film,
+                render,
+                medium,
+                volumes,
+                lights,
+                meters,
+            }
         })
 }
 

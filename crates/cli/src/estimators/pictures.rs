@@ -69,7 +69,7 @@ pub fn render_all(
     let [width, height] = scene.resolution;
     let rows = (f64::from(options.width) * f64::from(height) / f64::from(width)).round();
     let resolution = [options.width, (rows as u32).clamp(1, 4 * options.width)];
-    let small = Scene { camera: Camera::new(camera, resolution), resolution, ..scene.clone() };
+    let small = Scene { camera: Camera::new(camera, resolution, None), resolution, ..scene.clone() };
     let (mut choices, mut refused) = (vec![(None, Estimators::default())], Vec::new());
     for estimator in Estimator::all() {
         let (name, kind) = (estimator.properties().name, estimator.kind());

@@ -363,7 +363,7 @@ mod tests {
             let scene =
                 SceneDescription::for_volume("a.vdb", &VolumeSummary { world_box, voxel_size, ..summary() });
             let description = scene.description.camera;
-            let camera = Camera::new(&description, [1600, 900]);
+            let camera = Camera::new(&description, [1600, 900], None);
             let corner_ray = |pixel| camera.ray(pixel, [0.0, 0.0], [0.5, 0.5]).direction;
             let [left_top, right_bottom] = [corner_ray([0, 0]), corner_ray([1600, 900])];
             let forward = camera.forward();

@@ -1,8 +1,9 @@
 //! Holds a tree of values against the JSON schema and says everything that is wrong, in words.
 //!
 //! Only what [`json_schema`](super::json_schema) generates is understood: objects with known properties,
-//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, and
-//! `anyOf` of different kinds of values.
+//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, `anyOf` of
+//! different kinds of values, of which several may be objects that differ in a key they need, and references to
+//! definitions.
 
 use serde_json::Value as Schema;
 
@@ -15,22 +16,24 @@ const GREATEST: f64 = 1e30;
 
 /// Everything in `node`, which messages call `name`, that the schema does not allow.
 pub(crate) fn problems(node: &Node, name: &str, schema: &Schema) -> Vec<Problem> {
-    let mut check = Check { problems: Vec::new() };
+    let mut check = Check { root: schema, problems: Vec::new() };
     check.value(node, name, schema);
     check.problems
 }
 
-struct Check {
+struct Check<'s> {
+    root: &'s Schema,
     problems: Vec<Problem>,
 }
 
-impl Check {
+impl<'s> Check<'s> {
     fn report(&mut self, place: &Place, message: String) {
         self.problems.push(place.problem(message));
     }
 
     /// `name` is what messages call the value.
-    fn value(&mut self, node: &Node, name: &str, schema: &Schema) {
+    fn value(&mut self, node: &Node, name: &str, schema: &'s Schema) {
+        let schema = self.resolved(schema);
         if let Some(words) = words_of(schema) {
             return self.word(node, name, &words);
         }
@@ -38,7 +41,14 @@ impl Check {
             if branches.iter().any(|branch| tag_of(branch).is_some()) {
                 return self.tagged_table(node, name, branches);
             }
-            return match branches.iter().find(|branch| is_kind(&node.value, kind_of(branch))) {
+            let branches = branches.iter().map(|branch| self.resolved(branch));
+            let fitting: Vec<&'s Schema> =
+                branches.filter(|branch| is_kind(&node.value, kind_of(branch))).collect();
+            let needs = |branch: &Schema| match &node.value {
+                Value::Table(entries) => entries.iter().any(|entry| is_required(branch, &entry.key)),
+                _ => false,
+            };
+            return match fitting.iter().find(|branch| needs(branch)).or(fitting.first()) {
                 Some(branch) => self.value(node, name, branch),
                 None => self.wrong_kind(node, name, schema),
             };
@@ -53,6 +63,12 @@ impl Check {
             Value::Table(entries) => self.table(node, name, entries, schema),
             Value::String(_) | Value::Boolean(_) | Value::Datetime => {}
         }
+    }
+
+    /// What a reference stands for; the schema itself otherwise.
+    fn resolved(&self, schema: &'s Schema) -> &'s Schema {
+        let name = schema.get("$ref").and_then(Schema::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
+        name.and_then(|name| self.root.get("$defs")?.get(name)).unwrap_or(schema)
     }
 
     fn wrong_kind(&mut self, node: &Node, name: &str, schema: &Schema) {
@@ -97,7 +113,7 @@ impl Check {
         }
     }
 
-    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &Schema) {
+    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &'s Schema) {
         let length = |key: &str| schema.get(key).and_then(Schema::as_u64);
         let is_fitting = length("minItems").is_none_or(|least| items.len() as u64 >= least)
             && length("maxItems").is_none_or(|most| items.len() as u64 <= most);
@@ -117,7 +133,7 @@ impl Check {
         }
     }
 
-    fn tagged_table(&mut self, node: &Node, name: &str, branches: &[Schema]) {
+    fn tagged_table(&mut self, node: &Node, name: &str, branches: &'s [Schema]) {
         let Value::Table(entries) = &node.value else {
             let message = format!("{name} must be a table with a `type`, not {}", kind_in_words(&node.value));
             return self.report(&node.place, message);
@@ -139,7 +155,7 @@ impl Check {
         }
     }
 
-    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &Schema) {
+    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &'s Schema) {
         let Some(properties) = schema.get("properties").and_then(Schema::as_object) else { return };
         let mut has_unknown = false;
         for entry in entries {
@@ -180,7 +196,9 @@ fn name_of(key: &str, schema: &Schema) -> String {
     let is_table = kind_of(schema) == "object" && matches!(key, "film" | "render" | "medium");
     match key {
         "camera" => "[camera]".to_owned(),
-        "volume" | "light" | "meter" => format!("[[{key}]]"),
+        "volume" | "light" | "meter" | "material" | "shape" if kind_of(schema) == "array" => {
+            format!("[[{key}]]")
+        }
         _ if is_table => format!("[{key}]"),
         _ => format!("`{key}`"),
     }
@@ -212,8 +230,20 @@ fn tag_of(schema: &Schema) -> Option<&str> {
     schema.get("properties")?.get("type")?.get("const")?.as_str()
 }
 
+/// A choice among objects by their `type` is an object.
 fn kind_of(schema: &Schema) -> &str {
-    schema.get("type").and_then(Schema::as_str).unwrap_or("")
+    let is_tagged =
+        || branches_of(schema).is_some_and(|branches| branches.iter().any(|b| tag_of(b).is_some()));
+    match schema.get("type").and_then(Schema::as_str) {
+        Some(kind) => kind,
+        None if is_tagged() => "object",
+        None => "",
+    }
+}
+
+fn is_required(schema: &Schema, key: &str) -> bool {
+    let required = schema.get("required").and_then(Schema::as_array);
+    required.is_some_and(|keys| keys.iter().any(|required| required == key))
 }
 
 fn is_kind(value: &Value, kind: &str) -> bool {
@@ -247,7 +277,11 @@ fn expected(schema: &Schema) -> String {
     }
     if let Some(branches) = branches_of(schema) {
         return match branches.iter().filter_map(tag_of).collect::<Vec<_>>() {
-            tags if tags.is_empty() => branches.iter().map(expected).collect::<Vec<_>>().join(" or "),
+            tags if tags.is_empty() => {
+                let mut ways: Vec<String> = branches.iter().map(expected).collect();
+                ways.dedup();
+                ways.join(" or ")
+            }
             tags => format!("a table with a `type`, one of {}", list_of(tags)),
         };
     }
@@ -270,6 +304,8 @@ fn expected(schema: &Schema) -> String {
             }
         }
         "object" => "a table".to_owned(),
+        // Of what is defined elsewhere only tables are referred to.
+        _ if schema.get("$ref").is_some() => "a table".to_owned(),
         _ => "something else".to_owned(),
     }
 }
