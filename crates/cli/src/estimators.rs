@@ -135,7 +135,7 @@ fn report(
             seed,
             threads: args.threads.map_or(cores, usize::from),
         };
-        pictures::render_all(scene, &description.camera, options, |name| tell(format!("picture by {name}")))
+        pictures::render_all(scene, description, options, |name| tell(format!("picture by {name}")))
     });
     Ok(Report {
         scene: name,

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_film::{Accumulation, Colours, Film, ImageMetadata, Layers};
-use tyndall_scene::description::{Integrator, Layer, SceneDescription};
+use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
+use tyndall_scene::description::{FilmDescription, Integrator, Layer, SceneDescription};
 use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
@@ -112,6 +112,12 @@ impl Args {
 pub fn run(args: Args) -> miette::Result<Done> {
     let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw)?;
     let description = &input.description;
+    if args.resolution.is_some() && description.film.crop.is_some() {
+        return Err(miette!(
+            "--resolution: the scene has film.crop, which counts pixels of its own resolution; give both as --set \
+             film.resolution=[W,H] --set film.crop=[LEFT,TOP,W,H]"
+        ));
+    }
     if args.print_scene {
         return answer(&input.text).map(|()| Done::All);
     }
@@ -128,7 +134,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
     }
     check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
 
-    let [width, height] = description.film.resolution;
+    let [width, height] = description.film.picture_size();
     // First of all, as it may be too large for this machine.
     let new_film = || Film::new(width, height, layers(description)).into_diagnostic();
     let films = observers.iter().map(|_| new_film()).collect::<miette::Result<Vec<Film>>>()?;
@@ -177,6 +183,11 @@ fn colours(observer: Observer) -> Colours {
     }
 }
 
+/// Where the picture lies in the whole.
+fn crop(film: &FilmDescription) -> Option<Crop> {
+    film.crop.map(|[left, top, ..]| Crop { corner: [left, top], full_size: film.resolution })
+}
+
 /// The options that stand for keys of the scene, as `--set` would give them.
 fn overrides(args: &Args) -> Vec<String> {
     let mut overrides = args.set.clone();
@@ -213,6 +224,7 @@ fn open_picture(
         ),
         seed: u64::from(description.render.seed),
         colours: colours(observer),
+        crop: crop(&description.film),
         seconds: 0.0,
     };
     let empty = Accumulation { film, metadata };
@@ -237,14 +249,22 @@ fn open_picture(
     Ok(saved)
 }
 
+/// The layers that the scene asks for; if it does not say, those that are about something in it. Shadow catchers always
+/// have theirs, which the picture's alpha needs.
 fn layers(description: &SceneDescription) -> Layers {
-    let wanted = |layer| description.film.layers.as_ref().is_none_or(|layers| layers.contains(&layer));
+    let asked = description.film.layers.as_ref();
+    let wanted = |layer| asked.is_none_or(|layers| layers.contains(&layer));
+    let of_surfaces = |layer| wanted(layer) && (asked.is_some() || !description.shapes.is_empty());
+    let has_catcher = description.shapes.iter().any(|shape| shape.shadow_catcher);
     Layers {
         depth: wanted(Layer::Depth),
         albedo: wanted(Layer::Albedo),
         emission: wanted(Layer::Emission),
         single: wanted(Layer::Single),
         multiple: wanted(Layer::Multiple),
+        normal: of_surfaces(Layer::Normal),
+        object_id: of_surfaces(Layer::ObjectId),
+        shadow_catcher: has_catcher || asked.is_some_and(|layers| layers.contains(&Layer::ShadowCatcher)),
     }
 }
 

@@ -173,15 +173,12 @@ impl<'a> Importer<'a> {
 
     fn plastic(&mut self, object: &'a Object, flipped: bool) -> Result<MaterialDescription, ImportError> {
         let is_rough = object.plugin != "plastic";
-        if object.boolean("nonlinear", false)? {
-            let message = "`nonlinear` is not supported: light within the coat is not coloured further";
-            self.unsupported(&object.place, message);
-        }
         Ok(MaterialDescription::Plastic {
             reflectance: self.texture(object, "diffuse_reflectance", 0.5, flipped)?,
             index: self.index(object, "polypropylene")?,
             roughness: is_rough.then(|| self.roughness(object, "beckmann")).transpose()?,
             reflection_tint: self.texture_if_given(object, "specular_reflectance", flipped)?,
+            nonlinear: object.boolean("nonlinear", false)?,
         })
     }
 
@@ -219,7 +216,13 @@ impl<'a> Importer<'a> {
                 transmission_tint: Some(base),
             }
         } else {
-            MaterialDescription::Plastic { reflectance: base, index, roughness, reflection_tint: None }
+            MaterialDescription::Plastic {
+                reflectance: base,
+                index,
+                roughness,
+                reflection_tint: None,
+                nonlinear: false,
+            }
         })
     }
 

@@ -212,12 +212,12 @@ impl TextureDescription {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum TextureDescription {
-    /// The same everywhere.
-    Constant(SpectrumDescription),
     /// A picture.
     Image(ImageTexture),
     /// Two values in turns.
     Checker(CheckerTexture),
+    /// The same everywhere. Last, as a table with other keys would pass for a spectrum without any.
+    Constant(SpectrumDescription),
 }
 
 impl From<f64> for TextureDescription {
