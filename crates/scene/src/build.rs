@@ -16,7 +16,7 @@ use crate::description::{
     AtmosphereShape, GridFilter, GridMeaning, ProceduralDescription, RawType, Storage, VolumeDescription,
     VolumeSource,
 };
-use crate::light::build_lights;
+use crate::light::{LightTree, build_lights};
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
 use crate::surface::{Boundaries, Presence, Surfaces, VolumeNumber, build_surfaces, numbers_of};
@@ -75,16 +75,19 @@ pub fn build_with(
         })
         .collect();
     volumes.retain(is_there);
-    let surfaces = build_surfaces(description, folder, &numbers, &mut notes)?;
+    let mut surfaces = build_surfaces(description, folder, &numbers, &mut notes)?;
 
-    let lights = build_lights(&description.lights, folder)?;
-    notes.extend(lights.warnings);
+    let mut lights = build_lights(&description.lights, folder)?;
+    lights.add_lamps(&description.shapes, &mut surfaces)?;
+    notes.append(&mut lights.warnings);
     if lights.lights.is_empty() && !volumes.iter().any(Volume::glows) {
         notes.push("the scene has no light: the picture will be black; add a [[light]]".into());
     }
-    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes, &surfaces));
-    let camera = Camera::new(&description.camera, description.film.resolution, description.film.crop);
     let boundaries = Boundaries::new(&surfaces, volumes.len());
+    lights.add_glowing_volumes(&volumes, |volume| boundaries.bound(volume));
+    let light_probabilities = light_probabilities(&lights.lights, scene_radius(&volumes, &surfaces));
+    let light_tree = LightTree::new(&lights.lights, &light_probabilities);
+    let camera = Camera::new(&description.camera, description.film.resolution, description.film.crop);
     let camera_presence = camera_presence(description, &camera, &boundaries, &surfaces, &numbers)?;
     let scene = Scene {
         resolution: camera.resolution(),
@@ -92,6 +95,7 @@ pub fn build_with(
         lights: lights.lights,
         light_spectra: lights.spectra,
         light_probabilities,
+        light_tree,
         surfaces,
         boundaries,
         volumes,

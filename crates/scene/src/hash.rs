@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use crate::canonical_names::without_names;
 use crate::description::{RenderDescription, SceneDescription};
 use crate::error::SceneError;
 
@@ -24,8 +25,8 @@ impl fmt::Display for SceneHash {
 ///
 /// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
 /// shapes, materials, lights and the bytes of the files they name. It leaves out what does not change the expected
-/// picture: where the files are, names (but for those that shapes call volumes and materials by), the unit (unless media
-/// are given in physical units), comments, samples per pixel, seed, integrator, exposure, layers and meters.
+/// picture: where the files are, names, the unit (unless media are given in physical units), comments, samples per pixel,
+/// seed, integrator, exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     // Only what is given in physical units depends on it.
@@ -35,13 +36,9 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.film.exposure = 0.0;
     canonical.film.layers = None;
     canonical.meters.clear();
+    without_names(&mut canonical);
     let RenderDescription { max_depth, mode, .. } = description.render;
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
-    // Shapes call volumes by their names.
-    if canonical.shapes.is_empty() {
-        canonical.volumes.iter_mut().for_each(|volume| volume.name = None);
-    }
-    canonical.shapes.iter_mut().for_each(|shape| shape.name = None);
     let mut known: HashMap<PathBuf, String> = HashMap::new();
     for file in canonical.files_mut() {
         let path = folder.join(&file);

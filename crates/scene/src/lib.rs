@@ -9,6 +9,7 @@ mod build;
 mod build_fields;
 mod build_medium;
 mod camera;
+mod canonical_names;
 mod channels;
 pub mod description;
 mod error;

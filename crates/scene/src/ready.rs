@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tyndall_optics::Spectrum;
 
-use crate::light::Light;
+use crate::light::{Light, LightTree};
 use crate::surface::{Boundaries, Presence, Surfaces};
 use crate::{Camera, Observer, Volume};
 
@@ -22,8 +22,11 @@ pub struct Scene {
     /// light is the spectrum times the luminance of what it shines in RGB. Lights beyond its end have none.
     pub light_spectra: Vec<Option<Spectrum>>,
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
-    /// well by themselves, and sums to 1 unless it is 0 for all.
+    /// well by themselves, and sums to 1 unless it is 0 for all. Of lights in the tree only their sum matters.
     pub light_probabilities: Vec<f64>,
+    /// Chooses by place among lights that are somewhere, if these are many. Lights at infinity have their share whatever
+    /// the place: the light that enters the scene from there, compared to the power of those inside.
+    pub light_tree: Option<LightTree>,
     /// Surfaces.
     pub surfaces: Surfaces,
     /// Which volumes the surfaces bound.
@@ -50,10 +53,22 @@ impl Scene {
     /// Number of the light for next-event estimation at `from` for `u` in [0, 1), and the probability with which it was
     /// drawn.
     pub fn choose_light(&self, from: DVec3, u: f64) -> Option<(usize, f64)> {
-        let _ = from;
+        let Some(tree) = &self.light_tree else {
+            return self.choose_among(0..self.light_probabilities.len(), u);
+        };
+        let beside = 1.0 - tree.share();
+        if u < beside {
+            return self.choose_among(tree.others().iter().copied(), u);
+        }
+        let (number, probability) = tree.choose(from, (u - beside) / tree.share());
+        Some((number, tree.share() * probability))
+    }
+
+    fn choose_among(&self, numbers: impl Iterator<Item = usize>, u: f64) -> Option<(usize, f64)> {
         let mut rest = u;
         let mut last = None;
-        for (number, &probability) in self.light_probabilities.iter().enumerate() {
+        for number in numbers {
+            let probability = self.light_probabilities[number];
             if probability <= 0.0 {
                 continue;
             }
@@ -81,8 +96,16 @@ impl Scene {
 
     /// Probability with which [`choose_light`](Self::choose_light) draws the light of this number at `from`.
     pub fn light_probability(&self, number: usize, from: DVec3) -> f64 {
-        let _ = from;
-        self.light_probabilities[number]
+        match &self.light_tree {
+            Some(tree) if tree.contains(number) => tree.share() * tree.probability(number, from),
+            _ => self.light_probabilities[number],
+        }
+    }
+
+    /// Draws lights with these probabilities from now on, whatever the place.
+    pub fn set_light_probabilities(&mut self, probabilities: Vec<f64>) {
+        self.light_probabilities = probabilities;
+        self.light_tree = None;
     }
 }
 
@@ -159,6 +182,7 @@ mod tests {
             light_spectra: vec![None; lights.len()],
             lights,
             light_probabilities,
+            light_tree: None,
             surfaces: Surfaces::default(),
             boundaries: Boundaries::default(),
             camera_presence: None,

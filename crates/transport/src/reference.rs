@@ -350,7 +350,7 @@ impl Shadow<'_> {
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec3::ZERO };
-        let sample = light.sample(vertex.position, [random.f64(), random.f64(), random.f64()]);
+        let sample = light.sample([random.f64(), random.f64(), random.f64()]);
         let offset = sample.position - vertex.position;
         let distance = offset.length();
         if distance == 0.0 || sample.pdf_volume <= 0.0 {

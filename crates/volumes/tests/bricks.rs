@@ -116,6 +116,32 @@ fn filtered_values_stay_within_the_bounds_of_their_segment() {
     }
 }
 
+#[test]
+fn cells_are_visited_once_each_are_those_of_lookups_and_fill_the_domain() {
+    for seed in 0..5 {
+        let tree = random_tree(&mut Draws(seed), 0.0);
+        let bricks = BrickGrid::from_tree(&tree, "t", Storage::F32).unwrap();
+        let table = bricks.origin().map(f64::from);
+        let [low, high] = bricks.domain().map(|corner| corner - DVec3::from_array(table));
+        let (mut corners, mut inside) = (Vec::new(), 0.0);
+        bricks.visit_cells(|cell, bounds| {
+            let edge = 1_u32 << cell.shift;
+            for p in [cell.corner, cell.corner.map(|at| at + edge - 1)] {
+                assert_eq!((bricks.cell(p), bricks.cell_bounds(p)), (cell, bounds));
+            }
+            let least = DVec3::from_array(cell.corner.map(f64::from));
+            let extent = (least + f64::from(edge)).min(high) - least.max(low);
+            inside += extent.max(DVec3::ZERO).element_product();
+            corners.push(cell.corner);
+        });
+        assert!((inside / (high - low).element_product() - 1.0).abs() < 1e-9);
+        let count = corners.len();
+        corners.sort_unstable();
+        corners.dedup();
+        assert_eq!(corners.len(), count);
+    }
+}
+
 /// Half a voxel further on, a voxel fills the unit cube between its number and the next.
 #[test]
 fn without_a_filter_each_voxel_is_a_cube() {

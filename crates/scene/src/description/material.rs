@@ -6,13 +6,34 @@ use serde::{Deserialize, Serialize};
 use super::spectrum::{SpectrumDescription, fraction};
 
 /// A material with a name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedMaterial {
     /// What shapes call it by.
     pub name: String,
     /// The material.
     #[serde(flatten)]
     pub material: MaterialDescription,
+}
+
+impl JsonSchema for NamedMaterial {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "NamedMaterial".into()
+    }
+
+    /// Every kind of material has a name as well.
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = MaterialDescription::json_schema(generator);
+        let kinds = schema.get_mut("oneOf").and_then(|kinds| kinds.as_array_mut());
+        for kind in kinds.into_iter().flatten() {
+            kind["properties"]["name"] =
+                serde_json::json!({ "description": "What shapes call it by.", "type": "string" });
+            if let Some(required) = kind["required"].as_array_mut() {
+                required.insert(0, "name".into());
+            }
+        }
+        schema.insert("description".to_owned(), "A material with a name.".into());
+        schema
+    }
 }
 
 /// What a surface is made of: the name of a `[[material]]`, or a material given in place.

@@ -59,7 +59,7 @@ pub use shape::{
     CylinderShape, DiscShape, MeshShape, Names, PlaneShape, RectangleShape, ShapeDescription, ShapeGeometry,
     SurfaceEmission,
 };
-pub(crate) use shape_rules::unknown_name;
+pub(crate) use shape_rules::unknown_volume;
 pub use spectrum::{KeyProblem, SpectrumDescription, SpectrumTable};
 pub use spheres::{DistributionDescription, IndexDescription, MaterialName, SubstanceChoice, substance};
 pub use transform::{Scale, TransformDescription};

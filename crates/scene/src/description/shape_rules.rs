@@ -9,17 +9,10 @@ use super::{
     MaterialChoice, MaterialDescription, MeshShape, Names, SceneDescription, ShapeDescription, ShapeGeometry,
     VolumeSource,
 };
+use crate::suggestion::did_you_mean;
 
 /// Reports what is wrong with the shapes, and with materials and volumes as shapes use them.
 pub(super) fn shapes(found: &mut Findings, scene: &SceneDescription) {
-    let mut names = HashSet::new();
-    for (index, material) in scene.materials.iter().enumerate() {
-        if !names.insert(material.name.as_str()) {
-            within(found, "material", index, |found| {
-                found.report("name", "two materials have this `name`: give each its own");
-            });
-        }
-    }
     for (index, description) in scene.shapes.iter().enumerate() {
         within(found, "shape", index, |found| shape(found, description, scene));
     }
@@ -54,17 +47,12 @@ fn shape(found: &mut Findings, shape: &ShapeDescription, scene: &SceneDescriptio
     for (index, instance) in shape.instances.iter().flatten().enumerate() {
         within(found, "instances", index, |found| transform_is_invertible(found, instance, "shape"));
     }
-    match &shape.material {
-        None => found.report(
+    if shape.material.is_none() {
+        found.report(
             "",
             "the shape has no `material`: give the name of a [[material]], or one such as { type = \"diffuse\" }, or \
              { type = \"null\" } if it is only the boundary of a volume",
-        ),
-        Some(MaterialChoice::Name(name)) if scene.materials.iter().all(|material| material.name != *name) => {
-            let names = scene.materials.iter().map(|material| material.name.as_str());
-            found.report("material", unknown_name("material", name, names));
-        }
-        Some(_) => {}
+        );
     }
     if let Some(emission) = &shape.emission {
         if is_null(shape.material.as_ref(), scene) {
@@ -97,7 +85,7 @@ fn volume_name(found: &mut Findings, key: &str, name: &str, scene: &SceneDescrip
         || fills_scene.clone().chain(scene.volumes.iter().filter_map(|volume| volume.name.as_deref()));
     match names().filter(|other| *other == name).count() {
         1 => {}
-        0 => found.report(key, unknown_name("volume", name, names())),
+        0 => found.report(key, unknown_volume(name, names())),
         _ => found.report(key, format!("several volumes are named `{name}`: give each its own name")),
     }
 }
@@ -165,20 +153,13 @@ fn mesh(found: &mut Findings, mesh: &MeshShape) {
     }
 }
 
-/// What is said of a name that nothing has.
-pub(crate) fn unknown_name<'a>(
-    what: &str,
-    name: &str,
-    choices: impl Iterator<Item = &'a str> + Clone,
-) -> String {
-    let distance = |choice: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &choice.to_lowercase());
-    let nearest = choices.clone().min_by_key(|choice| distance(choice));
-    let all: Vec<String> = choices.take(10).map(|choice| format!("`{choice}`")).collect();
-    match nearest {
-        None => format!("there is no {what} named `{name}`, nor any other: add a [[{what}]] of that name"),
-        Some(nearest) if 3 * distance(nearest) <= name.len().max(nearest.len()) => {
-            format!("there is no {what} named `{name}`, did you mean `{nearest}`?")
-        }
-        Some(_) => format!("there is no {what} named `{name}`; there is {}", all.join(", ")),
+/// What is said of a name that no volume has.
+pub(crate) fn unknown_volume<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    if names.is_empty() {
+        return format!(
+            "there is no volume `{name}`, nor any with a name: add a [[volume]] with `name = \"{name}\"`"
+        );
     }
+    format!("there is no volume `{name}`{}", did_you_mean(name, names.into_iter()))
 }

@@ -6,13 +6,16 @@ use glam::DVec3;
 use tyndall_optics::{Spectrum, cie};
 
 use super::{
-    AreaLight, ConstantLight, DistantLight, ImageLight, Light, PointLight, SpotLight, SunLight,
+    AreaLight, ConstantLight, DistantLight, ImageLight, Light, PointLight, SpotLight, SunLight, VolumeLight,
     read_light_image,
 };
-use crate::description::{ImageFilter, LightDescription, SpectrumDescription, SurfaceEmission};
+use crate::Volume;
+use crate::description::{
+    ImageFilter, LightDescription, ShapeDescription, SpectrumDescription, SurfaceEmission,
+};
 use crate::error::SceneError;
 use crate::sky::Sky;
-use crate::surface::WorldPrimitive;
+use crate::surface::{Surfaces, WorldPrimitive};
 
 /// Lights ready to trace, and what the user should know of them.
 #[derive(Debug, Clone, Default)]
@@ -92,9 +95,27 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
 }
 
 impl BuiltLights {
+    /// Adds a lamp for each of the `surfaces`, built from `shapes`, that shines, and tells it its number.
+    pub(crate) fn add_lamps(
+        &mut self,
+        shapes: &[ShapeDescription],
+        surfaces: &mut Surfaces,
+    ) -> Result<(), SceneError> {
+        let instances = |shape: &ShapeDescription| shape.instances.as_ref().map_or(1, Vec::len);
+        let descriptions = shapes.iter().flat_map(|shape| std::iter::repeat_n(shape, instances(shape)));
+        for (number, description) in descriptions.enumerate().take(surfaces.shapes.len()) {
+            if let Some(emission) = &description.emission {
+                let primitives = surfaces.world_primitives(number);
+                let light = self.add_lamp(&surfaces.shapes[number].name, emission, primitives)?;
+                surfaces.shapes[number].light = Some(light);
+            }
+        }
+        Ok(())
+    }
+
     /// Adds the lamp that a shape called `name` is, and returns its number. `primitives` are the pieces of its surface, if
     /// points of it can be drawn uniformly.
-    pub fn add_lamp(
+    fn add_lamp(
         &mut self,
         name: &str,
         emission: &SurfaceEmission,
@@ -113,6 +134,20 @@ impl BuiltLights {
         self.lights.push(Light::Area(lamp));
         self.spectra.push(of_luminance_one(spectrum));
         Ok(self.lights.len() - 1)
+    }
+
+    /// Adds those of the `volumes` of a scene that glow and are where their own density says; `is_bounded_by_shapes` tells
+    /// of the others by their numbers.
+    pub(crate) fn add_glowing_volumes(
+        &mut self,
+        volumes: &[Volume],
+        is_bounded_by_shapes: impl Fn(usize) -> bool,
+    ) {
+        let glowing = volumes.iter().enumerate().filter(|(number, _)| !is_bounded_by_shapes(*number));
+        self.lights.extend(
+            glowing.filter_map(|(number, volume)| VolumeLight::new(volume, number).map(Light::Volume)),
+        );
+        self.spectra.resize(self.lights.len(), None);
     }
 }
 

@@ -10,6 +10,7 @@ mod area;
 mod build;
 mod constant;
 mod distant;
+mod emission_bounds;
 mod equirectangular;
 mod image;
 pub(crate) mod image_file;
@@ -18,6 +19,7 @@ mod spherical_rectangle;
 mod spot;
 mod sun;
 mod texel_distribution;
+mod tree;
 mod volume_light;
 
 use glam::DVec3;
@@ -32,6 +34,7 @@ pub use self::image_file::read_light_image;
 pub use self::point::PointLight;
 pub use self::spot::SpotLight;
 pub use self::sun::SunLight;
+pub use self::tree::LightTree;
 pub use self::volume_light::{VolumeLight, VolumeLightSample};
 
 /// A light. The clear sky is an image and, if it shines, a sun.
@@ -51,7 +54,7 @@ pub enum Light {
     Spot(SpotLight),
     /// A surface that shines.
     Area(AreaLight),
-    /// A volume that glows.
+    /// A medium that glows.
     Volume(VolumeLight),
 }
 
@@ -77,7 +80,8 @@ impl LightSample {
 }
 
 impl Light {
-    /// A direction towards the light from the point `from`; `u` is uniform in [0, 1)².
+    /// A direction towards the light from the point `from`; `u` is uniform in [0, 1)². A medium that glows has points on
+    /// all the way, and no light by this sample: see [`VolumeLight::sample`].
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
         match self {
             Self::Constant(light) => light.sample(u),
@@ -127,7 +131,7 @@ impl Light {
             Self::Point(light) => mean(light.power()),
             Self::Spot(light) => mean(light.power()),
             Self::Area(light) => mean(light.power()),
-            Self::Volume(_) => 0.0,
+            Self::Volume(light) => mean(light.power()),
         }
     }
 

@@ -10,8 +10,11 @@ use super::bvh::Bvh;
 use super::closed::is_closed;
 use super::placed::{Geometry, Placed};
 use super::triangle_mesh::TriangleMesh;
-use super::{Material, Mesh, Shape, Surfaces, read_mesh};
-use crate::description::{MaterialChoice, MeshShape, Names, ShapeDescription, ShapeGeometry, unknown_name};
+use super::{MaterialBuilder, Mesh, Shape, Surfaces, read_mesh};
+use crate::description::{
+    MaterialChoice, MaterialDescription, MeshShape, Names, ShapeDescription, ShapeGeometry, material_of_name,
+    unknown_volume,
+};
 use crate::{SceneDescription, SceneError};
 
 /// What shapes call a volume, and its number in the scene, if it has one: what does nothing to light has none.
@@ -31,6 +34,7 @@ pub(crate) fn build_surfaces(
 ) -> Result<Surfaces, SceneError> {
     let mut surfaces = Surfaces::default();
     let mut meshes = HashMap::new();
+    let mut builder = MaterialBuilder::new(&description.materials, folder);
     let mut named = HashMap::new();
     for (index, shape) in description.shapes.iter().enumerate() {
         let name = shape.name.clone().unwrap_or_else(|| format!("shape.{index}"));
@@ -42,11 +46,21 @@ pub(crate) fn build_surfaces(
                  and end only where light crosses back"
             ));
         }
+        let mut add = |description: &MaterialDescription, place: &str, notes: &mut Vec<String>| {
+            surfaces.materials.push(builder.build(description, place, notes)?);
+            Ok::<usize, SceneError>(surfaces.materials.len() - 1)
+        };
         let material = match &shape.material {
-            Some(MaterialChoice::Name(name)) => {
-                *named.entry(name.clone()).or_insert_with(|| add_material(&mut surfaces.materials))
-            }
-            _ => add_material(&mut surfaces.materials),
+            None => add(&MaterialDescription::Null, &name, notes)?,
+            Some(MaterialChoice::Here(material)) => add(material, &name, notes)?,
+            Some(MaterialChoice::Name(name)) => match named.get(name) {
+                Some(&number) => number,
+                None => {
+                    let material = material_of_name(name, &description.materials).map_err(refuse)?;
+                    let number = add(&material.material, name, notes)?;
+                    *named.entry(name).or_insert(number)
+                }
+            },
         };
         let interior = numbers_of(shape.interior.as_ref(), volumes).map_err(refuse)?;
         let exterior = numbers_of(shape.exterior.as_ref(), volumes).map_err(refuse)?;
@@ -81,17 +95,12 @@ pub(crate) fn build_surfaces(
     Ok(surfaces)
 }
 
-fn add_material(materials: &mut Vec<Material>) -> usize {
-    materials.push(Material::default());
-    materials.len() - 1
-}
-
 /// The numbers of the volumes of these names.
 pub(crate) fn numbers_of(names: Option<&Names>, volumes: &[VolumeNumber]) -> Result<Vec<usize>, String> {
     let names = names.map_or(&[][..], Names::all).iter();
     let found = names.map(|name| match volumes.iter().find(|volume| volume.name == *name) {
         Some(volume) => Ok(volume.number),
-        None => Err(unknown_name("volume", name, volumes.iter().map(|volume| volume.name.as_str()))),
+        None => Err(unknown_volume(name, volumes.iter().map(|volume| volume.name.as_str()))),
     });
     found.filter_map(Result::transpose).collect()
 }

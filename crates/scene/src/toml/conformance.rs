@@ -1,8 +1,9 @@
 //! Holds a tree of values against the JSON schema and says everything that is wrong, in words.
 //!
 //! Only what [`json_schema`](super::json_schema) generates is understood: objects with known properties,
-//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, `anyOf` of different
-//! kinds of values, and references to `$defs` by what holds itself.
+//! arrays, numbers with ranges, strings, booleans, choices of words, objects chosen by their `type`, `anyOf` of
+//! different kinds of values, of which several may be objects that differ in a key they need, and references to
+//! definitions.
 
 use serde_json::Value as Schema;
 
@@ -15,38 +16,24 @@ const GREATEST: f64 = 1e30;
 
 /// Everything in `node`, which messages call `name`, that the schema does not allow.
 pub(crate) fn problems(node: &Node, name: &str, schema: &Schema) -> Vec<Problem> {
-    let mut check = Check { schema, problems: Vec::new() };
+    let mut check = Check { root: schema, problems: Vec::new() };
     check.value(node, name, schema);
     check.problems
 }
 
-struct Check<'a> {
-    /// All of it.
-    schema: &'a Schema,
+struct Check<'s> {
+    root: &'s Schema,
     problems: Vec<Problem>,
 }
 
-impl<'a> Check<'a> {
-    /// What a reference stands for.
-    fn definition(&self, schema: &'a Schema) -> &'a Schema {
-        let name = schema.get("$ref").and_then(Schema::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
-        name.and_then(|name| self.schema.get("$defs")?.get(name)).unwrap_or(schema)
-    }
-
-    /// Whether a value is of the kind, or one of the kinds, that a schema is about.
-    fn is_kind(&self, value: &Value, schema: &'a Schema) -> bool {
-        let schema = self.definition(schema);
-        let is_any = |branches: &'a Vec<Schema>| branches.iter().any(|branch| self.is_kind(value, branch));
-        is_kind(value, kind_of(schema)) || branches_of(schema).is_some_and(is_any)
-    }
-
+impl<'s> Check<'s> {
     fn report(&mut self, place: &Place, message: String) {
         self.problems.push(place.problem(message));
     }
 
     /// `name` is what messages call the value.
-    fn value(&mut self, node: &Node, name: &str, schema: &'a Schema) {
-        let schema = self.definition(schema);
+    fn value(&mut self, node: &Node, name: &str, schema: &'s Schema) {
+        let schema = self.resolved(schema);
         if let Some(words) = words_of(schema) {
             return self.word(node, name, &words);
         }
@@ -54,7 +41,14 @@ impl<'a> Check<'a> {
             if branches.iter().any(|branch| tag_of(branch).is_some()) {
                 return self.tagged_table(node, name, branches);
             }
-            return match self.branch_for(&node.value, branches) {
+            let branches = branches.iter().map(|branch| self.resolved(branch));
+            let fitting: Vec<&'s Schema> =
+                branches.filter(|branch| is_kind(&node.value, kind_of(branch))).collect();
+            let needs = |branch: &Schema| match &node.value {
+                Value::Table(entries) => entries.iter().any(|entry| is_required(branch, &entry.key)),
+                _ => false,
+            };
+            return match fitting.iter().find(|branch| needs(branch)).or(fitting.first()) {
                 Some(branch) => self.value(node, name, branch),
                 None => self.wrong_kind(node, name, schema),
             };
@@ -71,16 +65,10 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The branch that is about such a value; of tables the one that knows most of the keys.
-    fn branch_for(&self, value: &Value, branches: &'a [Schema]) -> Option<&'a Schema> {
-        let known = |branch: &'a Schema| match (value, self.definition(branch).get("properties")) {
-            (Value::Table(entries), Some(keys)) => {
-                entries.iter().filter(|entry| keys.get(&entry.key).is_some()).count()
-            }
-            _ => 0,
-        };
-        // Of equals, the last is the greatest to `max_by_key`, and the first is meant.
-        branches.iter().rev().filter(|branch| self.is_kind(value, branch)).max_by_key(|branch| known(branch))
+    /// What a reference stands for; the schema itself otherwise.
+    fn resolved(&self, schema: &'s Schema) -> &'s Schema {
+        let name = schema.get("$ref").and_then(Schema::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
+        name.and_then(|name| self.root.get("$defs")?.get(name)).unwrap_or(schema)
     }
 
     fn wrong_kind(&mut self, node: &Node, name: &str, schema: &Schema) {
@@ -125,7 +113,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &'a Schema) {
+    fn array(&mut self, node: &Node, name: &str, items: &[Node], schema: &'s Schema) {
         let length = |key: &str| schema.get(key).and_then(Schema::as_u64);
         let is_fitting = length("minItems").is_none_or(|least| items.len() as u64 >= least)
             && length("maxItems").is_none_or(|most| items.len() as u64 <= most);
@@ -133,7 +121,7 @@ impl<'a> Check<'a> {
             let message = format!("{name} must be {}, not {} of them", expected(schema), items.len());
             return self.report(&node.place, message);
         }
-        let Some(item_schema) = schema.get("items").map(|items| self.definition(items)) else { return };
+        let Some(item_schema) = schema.get("items") else { return };
         let is_array_of_tables = kind_of(item_schema) == "object" || branches_of(item_schema).is_some();
         for (index, item) in items.iter().enumerate() {
             let item_name = if is_array_of_tables {
@@ -145,7 +133,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn tagged_table(&mut self, node: &Node, name: &str, branches: &'a [Schema]) {
+    fn tagged_table(&mut self, node: &Node, name: &str, branches: &'s [Schema]) {
         let Value::Table(entries) = &node.value else {
             let message = format!("{name} must be a table with a `type`, not {}", kind_in_words(&node.value));
             return self.report(&node.place, message);
@@ -167,7 +155,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &'a Schema) {
+    fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &'s Schema) {
         let Some(properties) = schema.get("properties").and_then(Schema::as_object) else { return };
         let mut has_unknown = false;
         for entry in entries {
@@ -208,7 +196,9 @@ fn name_of(key: &str, schema: &Schema) -> String {
     let is_table = kind_of(schema) == "object" && matches!(key, "film" | "render" | "medium");
     match key {
         "camera" => "[camera]".to_owned(),
-        "volume" | "light" | "meter" => format!("[[{key}]]"),
+        "volume" | "light" | "meter" | "material" | "shape" if kind_of(schema) == "array" => {
+            format!("[[{key}]]")
+        }
         _ if is_table => format!("[{key}]"),
         _ => format!("`{key}`"),
     }
@@ -240,8 +230,20 @@ fn tag_of(schema: &Schema) -> Option<&str> {
     schema.get("properties")?.get("type")?.get("const")?.as_str()
 }
 
+/// A choice among objects by their `type` is an object.
 fn kind_of(schema: &Schema) -> &str {
-    schema.get("type").and_then(Schema::as_str).unwrap_or("")
+    let is_tagged =
+        || branches_of(schema).is_some_and(|branches| branches.iter().any(|b| tag_of(b).is_some()));
+    match schema.get("type").and_then(Schema::as_str) {
+        Some(kind) => kind,
+        None if is_tagged() => "object",
+        None => "",
+    }
+}
+
+fn is_required(schema: &Schema, key: &str) -> bool {
+    let required = schema.get("required").and_then(Schema::as_array);
+    required.is_some_and(|keys| keys.iter().any(|required| required == key))
 }
 
 fn is_kind(value: &Value, kind: &str) -> bool {
@@ -275,7 +277,11 @@ fn expected(schema: &Schema) -> String {
     }
     if let Some(branches) = branches_of(schema) {
         return match branches.iter().filter_map(tag_of).collect::<Vec<_>>() {
-            tags if tags.is_empty() => branches.iter().map(expected).collect::<Vec<_>>().join(" or "),
+            tags if tags.is_empty() => {
+                let mut ways: Vec<String> = branches.iter().map(expected).collect();
+                ways.dedup();
+                ways.join(" or ")
+            }
             tags => format!("a table with a `type`, one of {}", list_of(tags)),
         };
     }
@@ -298,6 +304,8 @@ fn expected(schema: &Schema) -> String {
             }
         }
         "object" => "a table".to_owned(),
+        // Of what is defined elsewhere only tables are referred to.
+        _ if schema.get("$ref").is_some() => "a table".to_owned(),
         _ => "something else".to_owned(),
     }
 }

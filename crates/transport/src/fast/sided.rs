@@ -130,7 +130,7 @@ pub(super) fn draw_light(
     let (number, probability) = scene.choose_light(from, random.f64())?;
     let light = &scene.lights[number];
     if let Light::Volume(glow) = light {
-        let sample = glow.sample(from, [random.f64(), random.f64(), random.f64()]);
+        let sample = glow.sample([random.f64(), random.f64(), random.f64()]);
         let offset = sample.position - from;
         let distance = offset.length();
         if distance == 0.0 || sample.pdf_volume <= 0.0 {

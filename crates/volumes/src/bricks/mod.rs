@@ -33,6 +33,7 @@
 
 mod bounds;
 mod build;
+mod cells;
 mod filter;
 mod lookup;
 mod storage;
