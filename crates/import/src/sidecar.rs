@@ -3,14 +3,14 @@
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf, absolute};
 
 use tyndall_volumes::{Grid, WriteOptions};
 
 use crate::{ImportError, Mesh};
 
-/// A folder for meshes, grids and tables; it is made when the first is written.
+/// A folder for meshes and grids; it is made when the first is written.
 #[derive(Debug)]
 pub struct Sidecar {
     folder: PathBuf,
@@ -47,13 +47,19 @@ impl Sidecar {
             .map_err(|error| ImportError::of(&self.folder, error.to_string()))
     }
 
-    /// Writes a text to a file named after `name`; returns its absolute path.
+    /// Writes all that `source` holds into a file named after `name`; returns its absolute path.
     ///
     /// # Errors
-    /// If the file cannot be written.
-    pub fn write_text(&self, name: &str, extension: &str, text: &str) -> Result<PathBuf, ImportError> {
+    /// If the source cannot be read or the file cannot be written.
+    pub fn write_copy(
+        &self,
+        name: &str,
+        extension: &str,
+        source: &mut impl Read,
+    ) -> Result<PathBuf, ImportError> {
         let path = self.path(name, extension)?;
-        fs::write(&path, text).map_err(|error| unwritable(&path, &error.to_string()))?;
+        let written = File::create(&path).and_then(|mut out| io::copy(source, &mut out));
+        written.map_err(|error| unwritable(&path, &error.to_string()))?;
         Ok(path)
     }
 
