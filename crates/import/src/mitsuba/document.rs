@@ -83,8 +83,7 @@ impl Document {
         let candidates = self.folders.iter().chain([&beside]).map(|folder| folder.join(name));
         for candidate in candidates {
             if candidate.is_file() {
-                return std::path::absolute(&candidate)
-                    .map_err(|error| ImportError::unreadable(&candidate, &error));
+                return candidate.canonicalize().map_err(|error| ImportError::unreadable(&candidate, &error));
             }
         }
         Err(place.error(format!("there is no file `{}`; mend its name", excerpt(name))))

@@ -10,8 +10,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::{DAffine3, DVec3};
-use tyndall_volumes::{Grid, GridValues, Lookup, ReadRequest, Tree, read, read_bytes};
+use tyndall_volumes::{Grid, GridValues, LEAF_VOXELS, Lookup, ReadRequest, Tree, read, read_bytes};
 
+use super::boundaries::Extent;
 use crate::{ImportError, Sidecar};
 
 /// A `.vol` file.
@@ -91,17 +92,19 @@ impl GridFile {
         DAffine3::from_scale((greatest - least).recip()) * DAffine3::from_translation(-least)
     }
 
+    /// The first and the last cell, along each axis, that is not 0; what is not counted may be.
+    fn filled_cells(&self) -> [[i32; 3]; 2] {
+        match &self.grid.values {
+            GridValues::Float(tree) => filled(tree, |value| *value != 0.0),
+            GridValues::Vec3(tree) => filled(tree, |value| *value != [0.0; 3]),
+            _ => [[0; 3], self.cells.map(|count| count - 1)],
+        }
+    }
+
     /// Whether the outermost cells are 0, so that nothing needs to go on.
     fn ends_in_zero(&self) -> bool {
-        let zero = |voxel: [i32; 3], value: f32| {
-            let is_outermost = (0..3).any(|axis| voxel[axis] == 0 || voxel[axis] == self.cells[axis] - 1);
-            !is_outermost || value == 0.0
-        };
-        match &self.grid.values {
-            GridValues::Float(tree) => all(tree, |voxel, value| zero(voxel, *value)),
-            GridValues::Vec3(tree) => all(tree, |voxel, value| value.iter().all(|value| zero(voxel, *value))),
-            _ => false,
-        }
+        let [first, last] = self.filled_cells();
+        (0..3).all(|axis| first[axis] > last[axis] || first[axis] > 0 && last[axis] < self.cells[axis] - 1)
     }
 
     /// The grid with a layer of the outermost values around it.
@@ -152,6 +155,22 @@ impl GridFile {
 }
 
 impl Placed {
+    /// Where the density is.
+    pub fn extent(&self) -> Extent {
+        let [first, last] = self.file.filled_cells().map(|cell| DVec3::from_array(cell.map(f64::from)));
+        let cells = DVec3::from_array(self.file.cells.map(f64::from));
+        // Interpolation reaches to the centres of the neighbours, of which the border is a layer more.
+        let reach = match self.filter_reaches_out {
+            false => 0.0,
+            true if self.file.ends_in_zero() => 0.5,
+            true => 1.5,
+        };
+        let support = [(first - reach) / cells, (last + 1.0 + reach) / cells];
+        let is_empty = first.cmpgt(last).any();
+        let support = if is_empty { [DVec3::splat(0.5); 2] } else { support };
+        Extent { to_world: self.transform * self.file.box_to_unit_cube().inverse(), support, is_box: false }
+    }
+
     /// Files with the density of each channel: the file itself if it will do.
     pub fn split(&self, sidecar: &Sidecar) -> Result<Vec<DensityFile>, ImportError> {
         let needs_border = self.filter_reaches_out && !self.file.ends_in_zero();
@@ -202,29 +221,29 @@ fn write(sidecar: &Sidecar, name: &str, grid: &Grid) -> Result<String, ImportErr
     sidecar.write_grid(name, grid).map(|path| path.to_string_lossy().into_owned())
 }
 
-/// Whether all active voxels are as asked.
-fn all<T: Copy>(tree: &Tree<T>, is_right: impl Fn([i32; 3], &T) -> bool) -> bool {
-    let leaves = tree.leaves.iter().zip(tree.leaf_values.chunks(tyndall_volumes::LEAF_VOXELS));
-    let mut leaves = leaves.map(|(leaf, values)| {
-        values.iter().enumerate().all(|(at, value)| {
+/// The least and the greatest coordinates of active voxels that count; the first above the last if none does.
+fn filled<T: Copy>(tree: &Tree<T>, counts: impl Fn(&T) -> bool) -> [[i32; 3]; 2] {
+    let mut bounds = [[i32::MAX; 3], [i32::MIN; 3]];
+    let mut add = |voxel: [i32; 3]| {
+        for axis in 0..3 {
+            bounds[0][axis] = bounds[0][axis].min(voxel[axis]);
+            bounds[1][axis] = bounds[1][axis].max(voxel[axis]);
+        }
+    };
+    for (leaf, values) in tree.leaves.iter().zip(tree.leaf_values.chunks(LEAF_VOXELS)) {
+        for (at, value) in values.iter().enumerate() {
             let (x, y, z) = (at >> 6, at >> 3 & 7, at & 7);
             let is_active = leaf.active[x] >> (y << 3 | z) & 1 == 1;
-            let voxel = [x, y, z].map(|coordinate| coordinate as i32);
-            let voxel = std::array::from_fn(|axis| leaf.origin[axis] + voxel[axis]);
-            !is_active || is_right(voxel, value)
-        })
-    });
-    let mut tiles = tree.tiles.iter().map(|tile| {
-        let last = (1 << tile.log2_edge) - 1;
-        // A tile touches the border where one of its corners does.
-        (0..8).all(|corner| {
-            let voxel = std::array::from_fn(|axis| {
-                tile.origin[axis] + if corner >> axis & 1 == 1 { last } else { 0 }
-            });
-            is_right(voxel, &tile.value)
-        })
-    });
-    leaves.all(|right| right) && tiles.all(|right| right)
+            if is_active && counts(value) {
+                add([leaf.origin[0] + x as i32, leaf.origin[1] + y as i32, leaf.origin[2] + z as i32]);
+            }
+        }
+    }
+    for tile in tree.tiles.iter().filter(|tile| tile.active && counts(&tile.value)) {
+        add(tile.origin);
+        add(tile.origin.map(|coordinate| coordinate + (1 << tile.log2_edge) - 1));
+    }
+    bounds
 }
 
 const MAGIC: &[u8] = b"VOL\x03";

@@ -8,6 +8,7 @@ use tyndall_scene::description::{
     FilmDescription, LightDescription, NamedMaterial, RenderDescription, ShapeDescription, VolumeDescription,
 };
 
+use super::boundaries::{self, MediumVolumes};
 use super::document::Document;
 use super::object::{Class, Object, Place};
 use super::shape::Instances;
@@ -26,6 +27,8 @@ pub(super) struct Importer<'a> {
     pub lights: Vec<LightDescription>,
     /// Names of the volumes that a medium has become.
     pub media: HashMap<usize, Vec<String>>,
+    /// The same in the order of the file, with where they are.
+    pub medium_volumes: Vec<MediumVolumes>,
     /// Names of the materials that objects have become, for textures as they are and upside down.
     pub named_materials: HashMap<(usize, bool), String>,
     /// Objects that are being looked at, from the outermost to the innermost.
@@ -52,6 +55,7 @@ impl<'a> Importer<'a> {
             shapes: Vec::new(),
             lights: Vec::new(),
             media: HashMap::new(),
+            medium_volumes: Vec::new(),
             named_materials: HashMap::new(),
             open: Vec::new(),
             // The medium that fills the scene has this name.
@@ -110,7 +114,7 @@ impl<'a> Importer<'a> {
             lights: self.lights,
             meters: Vec::new(),
         };
-        super::media::fill_the_scene(&mut description, path, &mut self.notes);
+        boundaries::simplify(&mut description, &self.medium_volumes, path, &mut self.notes);
         Ok((description, self.notes))
     }
 

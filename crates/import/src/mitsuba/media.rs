@@ -4,20 +4,19 @@
 //! box of its `sigma_t`, the unit cube under `to_world`, and only there; and, as every medium, only in shapes that have
 //! it for `interior`. A medium that is inside no shape, but that of the camera, fills the scene.
 
-use std::path::Path;
-
-use tyndall_scene::SceneDescription;
+use glam::{DAffine3, DVec3};
 use tyndall_scene::description::{
-    AlbedoGridDescription, BoxShape, GridFilter, MediumDescription, Names, SpectrumDescription,
+    AlbedoGridDescription, BoxShape, GridFilter, MediumDescription, SpectrumDescription,
     TransformDescription, VolumeDescription,
 };
 
+use super::boundaries::{Extent, MediumVolumes};
 use super::grid::{GridFile, Placed};
 use super::importer::Importer;
 use super::object::{Class, Object, Value};
 use super::spectrum::Role;
 use super::transform::Transform;
-use crate::{ImportError, Notes};
+use crate::ImportError;
 
 /// A quantity of a medium.
 enum Quantity {
@@ -35,14 +34,20 @@ impl<'a> Importer<'a> {
         }
         let object = self.object(number);
         let name = self.name(object);
-        let volumes = self.within(number, |importer| importer.volumes(object, &name))?;
+        let (volumes, extent) = self.within(number, |importer| importer.volumes(object, &name))?;
         let names: Vec<String> = volumes.iter().filter_map(|volume| volume.name.clone()).collect();
         self.volumes.extend(volumes);
         self.media.insert(number, names.clone());
+        self.medium_volumes.push(MediumVolumes { names: names.clone(), extent });
         Ok(names)
     }
 
-    fn volumes(&mut self, object: &'a Object, name: &str) -> Result<Vec<VolumeDescription>, ImportError> {
+    /// The volumes of a medium, and where they are.
+    fn volumes(
+        &mut self,
+        object: &'a Object,
+        name: &str,
+    ) -> Result<(Vec<VolumeDescription>, Option<Extent>), ImportError> {
         object.ignore(&["has_spectral_extinction", "sample_emitters"]);
         let is_homogeneous = match object.plugin.as_str() {
             "homogeneous" => true,
@@ -78,19 +83,22 @@ impl<'a> Importer<'a> {
             volume.medium.mu_s = Some(self.spectrum(object, "sigma_s", Role::Coefficient, 0.0)?);
             volume.medium.scale = Some(scale).filter(|scale| *scale != 1.0);
             self.tell_unused(object);
-            return Ok(vec![volume]);
+            return Ok((vec![volume], None));
         }
         // Mitsuba 0.x calls the extinction of grids so.
         let sigma_t = if object.get("density").is_some() { "density" } else { "sigma_t" };
         let extinction = self.quantity(object, sigma_t, Role::Coefficient, 1.0)?;
         let albedo = self.quantity(object, "albedo", Role::Fraction, 0.75)?;
         self.tell_unused(object);
+        let mut extent = None;
         let mut volumes = match extinction {
             Quantity::Constant(mu_t, transform) => {
                 (volume.medium.mu_t, volume.medium.scale) = scaled(mu_t, scale);
                 if !is_homogeneous {
                     volume.cuboid = Some(BoxShape { min: [0.0; 3], max: [1.0; 3] });
                     volume.transform = Transform::describe(&transform.map);
+                    let support = [DVec3::ZERO, DVec3::ONE];
+                    extent = Some(Extent { to_world: transform.map, support, is_box: true });
                 }
                 vec![volume]
             }
@@ -102,6 +110,7 @@ impl<'a> Importer<'a> {
                     );
                 }
                 let grids = placed.split(self.sidecar)?;
+                extent = Some(placed.extent());
                 let is_one = grids.len() == 1;
                 let mut volumes = Vec::new();
                 for (channel, grid) in grids.into_iter().enumerate() {
@@ -137,17 +146,15 @@ impl<'a> Importer<'a> {
                     } else if volume.file.is_none() && filter != GridFilter::default() {
                         self.unsupported(&object.place, "the grid of the `albedo` is filtered trilinearly");
                     }
-                    let own = volume
-                        .transform
-                        .as_ref()
-                        .map_or(glam::DAffine3::IDENTITY, TransformDescription::to_affine);
+                    let own =
+                        volume.transform.as_ref().map_or(DAffine3::IDENTITY, TransformDescription::to_affine);
                     let file = placed.file_in(&own, self.sidecar)?;
                     volume.medium.albedo = Some(1.0.into());
                     volume.albedo_grid = Some(AlbedoGridDescription { file: Some(file), grid: None });
                 }
             }
         }
-        Ok(volumes)
+        Ok((volumes, extent))
     }
 
     /// A quantity that may be a `<volume>`.
@@ -214,61 +221,5 @@ fn scaled(mu_t: SpectrumDescription, scale: f64) -> (Option<SpectrumDescription>
         SpectrumDescription::Grey(value) => (Some((value * scale).into()), None),
         SpectrumDescription::Channels(channels) => (Some(channels.map(|value| value * scale).into()), None),
         table => (Some(table), Some(scale).filter(|scale| *scale != 1.0)),
-    }
-}
-
-/// Lets the medium that is inside no shape fill the scene.
-pub(super) fn fill_the_scene(description: &mut SceneDescription, path: &Path, notes: &mut Notes) {
-    let bounded: Vec<String> =
-        description.shapes.iter().flat_map(|shape| names(&shape.interior)).cloned().collect();
-    let is_everywhere = |volume: &VolumeDescription| {
-        let is_bounded = volume.name.as_ref().is_some_and(|name| bounded.contains(name));
-        !is_bounded && volume.source() == Ok(tyndall_scene::description::VolumeSource::Shapes)
-    };
-    let (everywhere, rest): (Vec<_>, Vec<_>) = description.volumes.drain(..).partition(is_everywhere);
-    description.volumes = rest;
-    let mut everywhere = everywhere.into_iter();
-    let Some(volume) = everywhere.next() else { return free_the_camera(description, &bounded) };
-    let filling = volume.name.clone().unwrap_or_default();
-    if volume.albedo_grid.is_some() {
-        notes.unsupported(
-            path,
-            1,
-            format!("the albedo of `{filling}`, which fills the scene, does not vary"),
-        );
-    }
-    description.medium = Some(volume.medium);
-    let gone: Vec<String> = everywhere.filter_map(|volume| volume.name).collect();
-    for name in &gone {
-        let message = format!("the medium `{name}` is inside no shape, as `{filling}` is, and is left out");
-        notes.unsupported(path, 1, message);
-    }
-    for shape in &mut description.shapes {
-        let mut exterior: Vec<String> = names(&shape.exterior).cloned().collect();
-        exterior.retain(|name| !gone.contains(name));
-        for name in exterior.iter_mut().filter(|name| **name == filling) {
-            *name = "medium".into();
-        }
-        shape.exterior = some_names(exterior);
-    }
-    free_the_camera(description, &bounded);
-}
-
-/// Leaves to the camera's `inside` only volumes that have bounds.
-fn free_the_camera(description: &mut SceneDescription, bounded: &[String]) {
-    let inside = names(&description.camera.inside).filter(|name| bounded.contains(name)).cloned();
-    description.camera.inside = some_names(inside.collect());
-}
-
-fn names(names: &Option<Names>) -> impl Iterator<Item = &String> {
-    names.iter().flat_map(|names| names.all())
-}
-
-/// One name, several, or none.
-pub(super) fn some_names(mut names: Vec<String>) -> Option<Names> {
-    match names.len() {
-        0 => None,
-        1 => names.pop().map(Names::One),
-        _ => Some(Names::Several(names)),
     }
 }

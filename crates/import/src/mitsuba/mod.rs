@@ -6,6 +6,7 @@
 //!
 //! Source: Jakob et al., "Mitsuba 3 renderer", 2022: documentation of the plug-ins, and their code where that is silent.
 
+mod boundaries;
 mod document;
 mod elements;
 mod emitter;
@@ -17,6 +18,7 @@ mod object;
 mod phase;
 mod sensor;
 mod shape;
+mod smooth;
 mod spectrum;
 mod text;
 mod texture;

@@ -132,7 +132,7 @@ impl<'a> Importer<'a> {
             let _ = writeln!(text, "{},{value}", cosine.clamp(-1.0, 1.0));
         }
         let name = object.id.as_deref().unwrap_or("phase");
-        let file = self.sidecar.write_text(name, "csv", &text)?;
+        let file = self.sidecar.write_copy(name, "csv", &mut text.as_bytes())?;
         Ok(PhaseDescription::Tabulated { file: file.to_string_lossy().into_owned(), wavelength_nm: None })
     }
 }

@@ -7,8 +7,8 @@
 
 use tyndall_scene::description::{CameraDescription, Projection};
 
+use super::boundaries::some_names;
 use super::importer::Importer;
-use super::media::some_names;
 use super::object::{Class, Object};
 use super::transform::{LookAt, plain};
 use crate::ImportError;

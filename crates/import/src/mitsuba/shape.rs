@@ -5,6 +5,7 @@
 //! cylinders inside out. `flip_normals` turns any of them.
 
 use std::collections::HashMap;
+use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use tyndall_scene::description::{
@@ -12,10 +13,11 @@ use tyndall_scene::description::{
     ShapeDescription, SphereShape, SurfaceEmission, TransformDescription,
 };
 
+use super::boundaries::some_names;
 use super::importer::Importer;
 use super::material::Use;
-use super::media::some_names;
 use super::object::{Class, Object};
+use super::smooth::with_normals;
 use super::spectrum::Role;
 use super::transform::{Transform, plain, similarity};
 use crate::ImportError;
@@ -175,6 +177,9 @@ impl<'a> Importer<'a> {
             shape.name = Some(self.name(object));
         }
         self.tell_unused(object);
+        if !is_null(&shape.material) {
+            self.smooth(&mut shape)?;
+        }
         if is_null(&shape.material) {
             if shape.interior.is_none() && shape.exterior.is_none() && shape.emission.is_none() {
                 return Ok(None);
@@ -186,6 +191,17 @@ impl<'a> Importer<'a> {
             }
         }
         Ok(Some(shape))
+    }
+
+    /// Gives a mesh without normals those that Mitsuba computes.
+    fn smooth(&mut self, shape: &mut ShapeDescription) -> Result<(), ImportError> {
+        let Some(mesh) = shape.mesh.as_mut().filter(|mesh| !mesh.flat) else { return Ok(()) };
+        let Some(file) = &mesh.file else { return Ok(()) };
+        let joins = file.ends_with(".obj");
+        if let Some(smooth) = with_normals(Path::new(file), joins, self.sidecar)? {
+            mesh.file = Some(smooth);
+        }
+        Ok(())
     }
 
     fn material_of(
