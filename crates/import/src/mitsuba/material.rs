@@ -40,9 +40,6 @@ const INDICES: [(&str, f64); 21] = [
 /// The rest of them.
 const MORE_INDICES: [(&str, f64); 2] = [("pet", 1.575), ("diamond", 2.419)];
 
-/// Metals whose indices Tyndall knows, by the names of Mitsuba's documentation.
-const METALS: [&str; 6] = ["Ag", "Al", "Au", "Cr", "Cu", "W"];
-
 /// Where a material is used.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Use {
@@ -158,8 +155,8 @@ impl<'a> Importer<'a> {
             k = Some(self.spectrum(object, "k", Role::Coefficient, 1.0)?);
         } else if material == "none" {
             reflectance = Some(1.0.into());
-        } else if let Some(known) = METALS.iter().find(|name| name.eq_ignore_ascii_case(&material)) {
-            metal = Some((*known).to_owned());
+        } else if tyndall_optics::metal(&material).is_some() {
+            metal = Some(material);
         } else {
             let message = format!("the metal `{}` is not known: aluminium is taken", excerpt(&material));
             self.unsupported(&object.place, message);
@@ -173,15 +170,12 @@ impl<'a> Importer<'a> {
 
     fn plastic(&mut self, object: &'a Object, flipped: bool) -> Result<MaterialDescription, ImportError> {
         let is_rough = object.plugin != "plastic";
-        if object.boolean("nonlinear", false)? {
-            let message = "`nonlinear` is not supported: light within the coat is not coloured further";
-            self.unsupported(&object.place, message);
-        }
         Ok(MaterialDescription::Plastic {
             reflectance: self.texture(object, "diffuse_reflectance", 0.5, flipped)?,
             index: self.index(object, "polypropylene")?,
             roughness: is_rough.then(|| self.roughness(object, "beckmann")).transpose()?,
             reflection_tint: self.texture_if_given(object, "specular_reflectance", flipped)?,
+            nonlinear: object.boolean("nonlinear", false)?,
         })
     }
 
@@ -219,7 +213,13 @@ impl<'a> Importer<'a> {
                 transmission_tint: Some(base),
             }
         } else {
-            MaterialDescription::Plastic { reflectance: base, index, roughness, reflection_tint: None }
+            MaterialDescription::Plastic {
+                reflectance: base,
+                index,
+                roughness,
+                reflection_tint: None,
+                nonlinear: false,
+            }
         })
     }
 

@@ -164,6 +164,7 @@ impl Textures<'_> {
                     index: self.index(parameters)?,
                     roughness: self.roughness(parameters, "")?,
                     reflection_tint: None,
+                    nonlinear: true,
                 }
             }
             "mix" => {
