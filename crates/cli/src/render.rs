@@ -17,10 +17,12 @@ use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
+use crate::imported::ImportArgs;
 use crate::output::{Output, check_writable, parse_exposure, write_all};
 use crate::terminal::{answer, tell};
 use crate::volume_input::RawArgs;
 use estimators::EstimatorArgs;
+use input::Input;
 use progress::{Progress, ProgressStyle};
 use stop::{Goal, Plan};
 
@@ -38,7 +40,7 @@ Examples:
   tyndall render smoke.toml -o part.acc --samples 64..128            a share of the work, for `tyndall merge`
   tyndall render smoke.toml -o smoke.exr --checkpoint smoke.acc --resume")]
 pub struct Args {
-    /// Scene file (.toml) or volume file; the built-in cumulus if left out
+    /// Scene file (.toml, or .pbrt and Mitsuba's .xml) or volume file; the built-in cumulus if left out
     input: Option<PathBuf>,
     /// Where to write the picture: .exr, .png, .acc or .json; may be given several times
     #[arg(short, long, value_name = "FILE")]
@@ -82,6 +84,8 @@ pub struct Args {
     print_scene: bool,
     #[command(flatten)]
     raw: RawArgs,
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 impl Args {
@@ -104,13 +108,14 @@ impl Args {
             progress: ProgressStyle::default(),
             print_scene: false,
             raw: RawArgs::default(),
+            import: ImportArgs::default(),
         }
     }
 }
 
 /// Loads, builds, renders, writes.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw)?;
+    let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw, &args.import)?;
     let description = &input.description;
     if args.resolution.is_some() && description.film.crop.is_some() {
         return Err(miette!(
@@ -119,7 +124,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         ));
     }
     if args.print_scene {
-        return answer(&input.text).map(|()| Done::All);
+        return print_scene(&input).map(|()| Done::All);
     }
     let observers = observers(description);
     let colours = colours(observers[0]);
@@ -172,6 +177,19 @@ pub fn run(args: Args) -> miette::Result<Done> {
     saved.into_diagnostic()?;
     report(&pictures, &outputs, &end);
     Ok(end)
+}
+
+/// `--print-scene`: what is not as in the renderer that the scene is for is told as well.
+fn print_scene(input: &Input) -> miette::Result<()> {
+    if let Some(written) = &input.written {
+        input.notes.iter().for_each(|note| tell(format!("note: {note}")));
+        if !written.paths().is_empty() {
+            tell(
+                "note: files in the folder of temporary files are gone after this; `tyndall convert` keeps them",
+            );
+        }
+    }
+    answer(&input.text)
 }
 
 /// What the channels of an observer's film are.

@@ -25,8 +25,8 @@ impl fmt::Display for SceneHash {
 ///
 /// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
 /// shapes, materials, lights and the bytes of the files they name. It leaves out what does not change the expected
-/// picture: where the files are, names, the unit (unless media
-/// are given in physical units), comments, samples per pixel, seed, integrator, exposure, layers and meters.
+/// picture: where the files are, names, the unit (unless media are given in physical units), comments, samples per pixel,
+/// seed, integrator, exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     // Only what is given in physical units depends on it.
