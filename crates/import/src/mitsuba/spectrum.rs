@@ -227,7 +227,7 @@ fn sampled(wavelengths: &[f64], values: &[f64]) -> SpectrumDescription {
     })
 }
 
-/// A spectrum times a number, if it can be said.
+/// Whether a spectrum is 0 by its form.
 pub(super) fn is_zero(spectrum: &SpectrumDescription) -> bool {
     match spectrum {
         SpectrumDescription::Grey(value) => *value == 0.0,
