@@ -163,7 +163,7 @@ impl Builder<'_> {
         let boundary = &self.boundaries[wrapper];
         match matter {
             Matter::Homogeneous(medium) => {
-                let mut volume = VolumeDescription { medium, ..VolumeDescription::default() };
+                let mut volume = VolumeDescription { medium: *medium, ..VolumeDescription::default() };
                 match boundary.body {
                     Body::Box(corners) => {
                         (volume.cuboid, volume.transform) = box_at(corners, &boundary.to_world)
@@ -244,7 +244,9 @@ impl Builder<'_> {
     /// A medium that begins or ends at surfaces of any kind.
     fn bounded(&mut self, name: &str, matter: Matter, used: &Use) -> Vec<String> {
         let volumes = match matter {
-            Matter::Homogeneous(medium) => vec![VolumeDescription { medium, ..VolumeDescription::default() }],
+            Matter::Homogeneous(medium) => {
+                vec![VolumeDescription { medium: *medium, ..VolumeDescription::default() }]
+            }
             Matter::Grids { volumes, bounds, support } => {
                 if bounds.is_some_and(|bounds| !holds(bounds, support)) {
                     let message = format!(
@@ -266,7 +268,7 @@ impl Builder<'_> {
     fn unbounded(&mut self, name: &str, matter: Matter, place: &Place) -> Vec<String> {
         match matter {
             Matter::Homogeneous(medium) if self.media.medium.is_none() => {
-                self.media.medium = Some(medium);
+                self.media.medium = Some(*medium);
                 vec!["medium".to_owned()]
             }
             Matter::Homogeneous(_) => {

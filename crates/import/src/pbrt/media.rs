@@ -32,7 +32,7 @@ pub(super) type Corners = [DVec3; 2];
 #[derive(Debug)]
 pub(super) enum Matter {
     /// The same everywhere.
-    Homogeneous(MediumDescription),
+    Homogeneous(Box<MediumDescription>),
     /// Grids, which overlap.
     Grids {
         /// One or several volumes, their transforms included; they have no names yet.
@@ -61,7 +61,7 @@ pub(super) fn matter(
     };
     let maker = Maker { name, entity, to_world: medium.to_world, exposure, context };
     let matter = match kind {
-        "homogeneous" => Matter::Homogeneous(maker.homogeneous()?),
+        "homogeneous" => Matter::Homogeneous(Box::new(maker.homogeneous()?)),
         "uniformgrid" => maker.uniform_grid()?,
         "rgbgrid" => maker.rgb_grid()?,
         "cloud" => maker.cloud()?,
@@ -221,11 +221,11 @@ impl Maker<'_> {
                 None => volume.medium.emission = None,
             }
         }
-        if let Some(temperature) = temperature {
-            if let Some(file) = self.grid_file("_temperature", &temperature)? {
-                volume.temperature = Some(self.temperature(Some(file), None)?);
-                volume.emission_scale = Some(self.exposure * Y_INTEGRAL_NM);
-            }
+        if let Some(temperature) = temperature
+            && let Some(file) = self.grid_file("_temperature", &temperature)?
+        {
+            volume.temperature = Some(self.temperature(Some(file), None)?);
+            volume.emission_scale = Some(self.exposure * Y_INTEGRAL_NM);
         }
         let support = density.support().unwrap_or(EVERYWHERE);
         Ok(Matter::Grids { volumes: vec![volume], bounds: Some(lattice.bounds), support })

@@ -2,11 +2,11 @@
 //!
 //! The way of the data:
 //!
-//!   file ──[`tokens`]──▶ words ──[`directives`]──▶ directives ──[`state`]──▶ [`world::World`] ──▶ description
+//!   file ──`tokens`──▶ words ──`directives`──▶ directives ──`state`──▶ `world::World` ──▶ description
 //!
 //! The world is what the directives have said, with the state that held; nothing in it is in Tyndall's words yet. That is
-//! done by one module a subject: [`camera`], [`lights`], [`textures`], [`materials`], [`shapes`], [`media`], and
-//! [`boundaries`], which finds out where media are.
+//! done by one module a subject: `camera`, `lights`, `textures`, `materials`, `shapes`, `media`, and
+//! `boundaries`, which finds out where media are.
 
 mod boundaries;
 mod camera;

@@ -14,6 +14,9 @@ use crate::ImportError;
 /// Textures within textures.
 const DEEPEST: usize = 16;
 
+/// Factors on texture coordinates, and what is added to them; where they are not 1 and 0.
+type Mapping = (Option<[f64; 2]>, Option<[f64; 2]>);
+
 /// Finds textures by name.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Textures<'a> {
@@ -177,7 +180,7 @@ impl Textures<'_> {
     }
 
     /// How texture coordinates are made: factors, and what is added.
-    fn mapping(&self, entity: &Entity) -> Result<(Option<[f64; 2]>, Option<[f64; 2]>), ImportError> {
+    fn mapping(&self, entity: &Entity) -> Result<Mapping, ImportError> {
         let parameters = &entity.parameters;
         if let Some(mapping) = parameters.text("mapping")?.filter(|mapping| *mapping != "uv") {
             let message =
@@ -240,11 +243,11 @@ impl Textures<'_> {
             SpectrumDescription::Channels(channels) => Some(*channels),
             SpectrumDescription::Table(_) => None,
         };
-        if let ([Constant(a), Constant(b)], Constant(SpectrumDescription::Grey(t))) = (&textures, &amount) {
-            if let (Some(a), Some(b)) = (channels(a), channels(b)) {
-                let mixed = std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t);
-                return Constant(spectra::grey_or_channels(mixed));
-            }
+        if let ([Constant(a), Constant(b)], Constant(SpectrumDescription::Grey(t))) = (&textures, &amount)
+            && let (Some(a), Some(b)) = (channels(a), channels(b))
+        {
+            let mixed = std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t);
+            return Constant(spectra::grey_or_channels(mixed));
         }
         let message = "a mixture of textures that vary is not supported: it is the first of them";
         self.context.unsupported(&entity.place, message);
