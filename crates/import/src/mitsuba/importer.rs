@@ -31,6 +31,8 @@ pub(super) struct Importer<'a> {
     pub medium_volumes: Vec<MediumVolumes>,
     /// Names of the materials that objects have become, for textures as they are and upside down.
     pub named_materials: HashMap<(usize, bool), String>,
+    /// How many materials each of these is mixed of.
+    pub material_parts: HashMap<String, usize>,
     /// Objects that are being looked at, from the outermost to the innermost.
     pub open: Vec<usize>,
     /// Names of volumes, materials and shapes that are taken.
@@ -57,6 +59,7 @@ impl<'a> Importer<'a> {
             media: HashMap::new(),
             medium_volumes: Vec::new(),
             named_materials: HashMap::new(),
+            material_parts: HashMap::new(),
             open: Vec::new(),
             // The medium that fills the scene has this name.
             names: HashSet::from(["medium".to_owned()]),

@@ -40,6 +40,9 @@ const INDICES: [(&str, f64); 21] = [
 /// The rest of them.
 const MORE_INDICES: [(&str, f64); 2] = [("pet", 1.575), ("diamond", 2.419)];
 
+/// Greatest number of materials in a mixture.
+const PARTS: usize = 256;
+
 /// Where a material is used.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Use {
@@ -62,9 +65,15 @@ impl<'a> Importer<'a> {
             return Ok(MaterialChoice::Name(name.clone()));
         }
         let material = self.within(number, |importer| importer.bsdf(object, usage))?;
+        let parts = self.count_parts(&material);
+        if parts > PARTS {
+            let message = format!("{} is mixed of more than {PARTS} parts: mix fewer", object.title());
+            return Err(object.place.error(message));
+        }
         let name = self.name(object);
         self.materials.push(NamedMaterial { name: name.clone(), material });
         self.named_materials.insert((number, usage.flipped), name.clone());
+        self.material_parts.insert(name.clone(), parts);
         Ok(MaterialChoice::Name(name))
     }
 
@@ -134,6 +143,16 @@ impl<'a> Importer<'a> {
         };
         self.tell_unused(object);
         Ok(description)
+    }
+
+    /// Number of materials that are no mixtures in one that may be.
+    fn count_parts(&self, material: &MaterialDescription) -> usize {
+        let MaterialDescription::Mix { materials, .. } = material else { return 1 };
+        let count = |choice: &MaterialChoice| match choice {
+            MaterialChoice::Name(name) => self.material_parts.get(name).copied().unwrap_or(1),
+            MaterialChoice::Here(material) => self.count_parts(material),
+        };
+        materials.iter().map(count).sum()
     }
 
     fn diffuse(&mut self, object: &'a Object, usage: Use) -> Result<MaterialDescription, ImportError> {
@@ -293,10 +312,11 @@ impl<'a> Importer<'a> {
 
     /// The material within another that adds nothing.
     fn taken(&mut self, object: &'a Object, usage: Use) -> Result<MaterialDescription, ImportError> {
-        self.tell_unused(object);
         let Some(number) = self.child(object, Class::Bsdf) else {
             return Err(object.place.error(format!("{} needs a <bsdf> within", object.title())));
         };
+        self.children(object, Class::Bsdf);
+        self.tell_unused(object);
         let inner = self.object(number);
         self.within(number, |importer| importer.bsdf(inner, usage))
     }

@@ -66,6 +66,9 @@ impl<'a> Importer<'a> {
         if scale < 0.0 {
             return Err(object.place.error("the `scale` of the medium is negative: mend it"));
         }
+        if scale > 1e12 {
+            return Err(object.place.error("the `scale` of the medium is too large to compute with"));
+        }
         if object.get("material").is_some() {
             self.unsupported(
                 &object.place,
@@ -204,9 +207,12 @@ impl<'a> Importer<'a> {
         let uses_box = volume.boolean("use_grid_bbox", false)?;
         let file = GridFile::read(&path, uses_box)?;
         let map = if uses_box { transform.map } else { transform.map * file.box_to_unit_cube() };
+        let is_large = map.to_cols_array().iter().any(|entry| entry.abs() > 1e30);
         let is_flat = map.matrix3.determinant() == 0.0;
-        if is_flat || !map.is_finite() || !map.inverse().is_finite() {
-            return Err(volume.place.error("the `to_world` flattens the grid: no factor may be 0"));
+        if is_flat || is_large || !map.is_finite() || !map.inverse().is_finite() {
+            return Err(volume
+                .place
+                .error("the `to_world` flattens the grid, or is too large: mend its factors"));
         }
         Ok(Quantity::Grid(
             Placed { file, transform: map, filter_reaches_out: filter == GridFilter::Trilinear },

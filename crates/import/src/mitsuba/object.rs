@@ -8,7 +8,7 @@ use std::cell::Cell;
 use std::path::Path;
 use std::rc::Rc;
 
-use super::transform::Transform;
+use super::transform::{GREATEST, Transform};
 use crate::ImportError;
 
 /// A line of a file.
@@ -207,10 +207,16 @@ impl Object {
     }
 
     pub fn vector(&self, name: &str) -> Result<Option<[f64; 3]>, ImportError> {
-        self.typed(name, "a <vector> or <point>", |value| match value {
+        let given = self.typed(name, "a <vector> or <point>", |value| match value {
             Value::Vector(value) => Some(*value),
             _ => None,
-        })
+        })?;
+        match given {
+            Some(vector) if vector.iter().any(|x| x.abs() > GREATEST) => {
+                Err(self.place.error(format!("`{name}` is too large to compute with")))
+            }
+            given => Ok(given),
+        }
     }
 
     /// The transform of this name, or none at all.

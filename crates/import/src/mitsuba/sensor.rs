@@ -65,6 +65,9 @@ impl<'a> Importer<'a> {
         };
         let [x, y] =
             [object.float("principal_point_offset_x", 0.0)?, object.float("principal_point_offset_y", 0.0)?];
+        if x.abs().max(y.abs()) > 1e6 {
+            return Err(object.place.error("the `principal_point_offset` is too large"));
+        }
         let is_even = (half[0] / half[1] / (width / height) - 1.0).abs() < 1e-12;
         if [x, y] != [0.0; 2] || is_mirrored || !is_even {
             let [left, right] = [half[0] * (2.0 * x - 1.0), half[0] * (2.0 * x + 1.0)];

@@ -19,7 +19,7 @@ use super::material::Use;
 use super::object::{Class, Object};
 use super::smooth::with_normals;
 use super::spectrum::Role;
-use super::transform::{Transform, plain, similarity};
+use super::transform::{GREATEST, Transform, plain, similarity};
 use crate::ImportError;
 
 /// Greatest number of shapes, all instances counted.
@@ -291,8 +291,9 @@ fn sphere(shape: &mut ShapeDescription, object: &Object, map: &DAffine3) -> Resu
 
 fn radius(object: &Object) -> Result<f64, ImportError> {
     let radius = object.float("radius", 1.0)?.abs();
-    if radius == 0.0 {
-        return Err(object.place.error(format!("the `radius` of {} must be above 0", object.title())));
+    if radius == 0.0 || radius > GREATEST {
+        let message = format!("the `radius` of {} must be above 0, and one to compute with", object.title());
+        return Err(object.place.error(message));
     }
     Ok(radius)
 }

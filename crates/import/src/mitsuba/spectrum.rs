@@ -162,7 +162,12 @@ impl<'a> Importer<'a> {
 
     /// Takes values that no such spectrum can have for the nearest that it can.
     fn in_range(&mut self, spectrum: SpectrumDescription, role: Role, place: &Place) -> SpectrumDescription {
-        let greatest = if role == Role::Fraction { 1.0 } else { 1e30 };
+        let greatest = match role {
+            Role::Fraction => 1.0,
+            // The factor on it may be large too.
+            Role::Coefficient => 1e18,
+            Role::Light => 1e30,
+        };
         let mut changed = None;
         let mut clamp = |value: f64| {
             let sound = value.clamp(0.0, greatest);
@@ -222,7 +227,7 @@ fn sampled(wavelengths: &[f64], values: &[f64]) -> SpectrumDescription {
     })
 }
 
-/// A spectrum times a number, if it can be said.
+/// Whether a spectrum is 0 by its form.
 pub(super) fn is_zero(spectrum: &SpectrumDescription) -> bool {
     match spectrum {
         SpectrumDescription::Grey(value) => *value == 0.0,

@@ -2,10 +2,18 @@
 
 use super::object::Value;
 
+/// Greatest number that a scene may have.
+const GREATEST: f64 = 1e30;
+
 /// A finite number, or what is wrong.
 pub(super) fn number(text: &str) -> Result<f64, String> {
-    let parsed = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-    parsed.ok_or_else(|| format!("`{}` is no number", excerpt(text)))
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.abs() <= GREATEST => Ok(value),
+        Ok(value) if value.is_finite() => {
+            Err(format!("{value:e} is too large: numbers beyond 1e30 are not computed with"))
+        }
+        _ => Err(format!("`{}` is no number", excerpt(text))),
+    }
 }
 
 /// Numbers between commas or spaces.

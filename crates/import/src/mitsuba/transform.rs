@@ -52,7 +52,8 @@ impl Transform {
             _ => return Err(format!("<{tag}> is no operation of a <transform>")),
         };
         let map = operation * self.map;
-        if !map.is_finite() {
+        let greatest = map.to_cols_array().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        if !(map.is_finite() && greatest <= GREATEST) {
             return Err("the transform is too large to compute with".into());
         }
         Ok(Self { map, look_at })
@@ -70,6 +71,9 @@ impl Transform {
         Some(TransformDescription { matrix: Some(matrix), ..TransformDescription::default() })
     }
 }
+
+/// Greatest coordinate of a point or a transform, so that products of two are numbers that a scene may have.
+pub(super) const GREATEST: f64 = 1e14;
 
 /// Without negative zeros.
 pub(super) fn plain(value: f64) -> f64 {

@@ -134,7 +134,11 @@ pub(super) fn camera(
     let [across, upwards] = [flip * half_width * scale[0], half_width * scale[1]];
     let window = [screen[0] * across, screen[1] * across, screen[2] * upwards, screen[3] * upwards];
     let focus = parameters.float_or("focaldistance", 1e6)? * scale[2];
-    let aperture_radius = parameters.float_or("lensradius", 0.0)?.max(0.0) * scale[0];
+    let mut aperture_radius = parameters.float_or("lensradius", 0.0)?.max(0.0) * scale[0];
+    if aperture_radius > 0.0 && projection == Projection::Orthographic {
+        context.unsupported(place, "an orthographic camera has no lens here: all is in focus");
+        aperture_radius = 0.0;
+    }
     if aperture_radius > 0.0 && focus <= 0.0 {
         return Err(place.error("`focaldistance` must be above 0"));
     }

@@ -181,7 +181,7 @@ fn numbers<const N: usize>(tokens: &mut Tokens) -> Result<[f64; N], ImportError>
             Some(Token::Word(word)) => number(word),
             _ => None,
         }
-        .ok_or_else(|| place.error(format!("{N} finite numbers are expected here")))?;
+        .ok_or_else(|| place.error(format!("{N} numbers within 1e30 are expected here")))?;
     }
     if has_brackets && tokens.next()? != Some(Token::Close) {
         return Err(start.error(format!("`]` is expected after {N} numbers")));

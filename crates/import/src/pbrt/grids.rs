@@ -30,7 +30,7 @@ impl Lattice {
 }
 
 impl Cells {
-    /// The values of a lattice's cells; what is wrong if they are not as many, or beyond 32-bit floats.
+    /// The values of a lattice's cells; what is wrong if they are not as many.
     pub(super) fn new(lattice: Lattice, values: impl ExactSizeIterator<Item = f64>) -> Result<Cells, String> {
         let [nx, ny, nz] = lattice.cells;
         let expected = nx.saturating_mul(ny).saturating_mul(nz);
@@ -40,12 +40,7 @@ impl Cells {
                 "has {given} values for {nx} x {ny} x {nz} = {expected} cells: give one for each"
             ));
         }
-        let values: Vec<f32> = values.map(|value| value as f32).collect();
-        if values.iter().all(|value| value.is_finite()) {
-            Ok(Cells { lattice, values })
-        } else {
-            Err("has values beyond 3.4e38: give smaller ones".to_owned())
-        }
+        Ok(Cells { lattice, values: values.map(|value| value as f32).collect() })
     }
 
     /// The values of a lattice's cells, one for each.

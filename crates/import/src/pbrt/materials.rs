@@ -287,8 +287,8 @@ impl Textures<'_> {
         };
         // pbrt takes 0 for 1.
         let index = if index == 0.0 { 1.0 } else { index };
-        if index < 0.0 {
-            return Err(parameter.error("is a refractive index and must be above 0"));
+        if !(0.01..=100.0).contains(&index) {
+            return Err(parameter.error("is a refractive index: give one from 0.01 to 100"));
         }
         Ok(IndexChoice::Number(index))
     }

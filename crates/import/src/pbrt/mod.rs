@@ -85,6 +85,10 @@ pub fn import_pbrt(path: &Path, sidecar: &Sidecar) -> Result<Imported, ImportErr
     description.volumes = media.volumes;
     description.camera.inside = media.inside;
     description.shapes = shapes.into_iter().flatten().collect();
+    // What none of the parts can know of the others, such as a material mixed of too many.
+    if let Some(violation) = description.violations().into_iter().next() {
+        return Err(ImportError::of(&path, format!("{}: {}", violation.path.join("."), violation.message)));
+    }
     Ok(Imported { description, notes: context.into_notes() })
 }
 
@@ -162,9 +166,6 @@ fn whole_shape(
     let geometry = shapes::geometry(shape, needs_uvs, context)?;
     shape.entity.parameters.pass(&["emissionfilename"]);
     context.tell_unused("Shape", &shape.entity);
-    if passage == Passage::Free && !is_boundary {
-        return Ok(None);
-    }
     let Some(Geometry { mut description, area, body }) = geometry else { return Ok(None) };
     if let Some(entity) = &shape.area_light {
         let message = match (passage, shape.object) {
@@ -176,6 +177,9 @@ fn whole_shape(
             Some(message) => context.choice(place, message),
             None => description.emission = Some(lights::emission(entity, area, exposure, context)?),
         }
+    }
+    if passage == Passage::Free && !is_boundary {
+        return Ok(None);
     }
     let alpha = alpha.filter(|alpha| *alpha != TextureDescription::Constant(SpectrumDescription::Grey(1.0)));
     if let Some(amount) = alpha {

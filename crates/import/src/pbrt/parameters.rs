@@ -297,9 +297,8 @@ fn add_value(
         (Some(Values::Texts(texts)), None, None, Token::Text(text)) => texts.push(text),
         (_, _, _, token) => {
             let shown = token.shown();
-            return Err(
-                place.error(format!("{shown} is no value here: numbers must be finite and strings quoted"))
-            );
+            return Err(place
+                .error(format!("{shown} is no value here: numbers are within 1e30 and strings are quoted")));
         }
     }
     Ok(())

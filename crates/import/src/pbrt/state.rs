@@ -9,6 +9,7 @@ use super::context::Context;
 use super::directives::{Directive, Entity};
 use super::parameters::Parameter;
 use super::place::Place;
+use super::tokens;
 use super::transforms;
 use super::world::{CameraUse, MaterialUse, Medium, Object, Shape, Texture, World};
 use crate::ImportError;
@@ -245,10 +246,11 @@ impl State {
 
     fn concat(&mut self, by: DAffine3, place: &Place) -> Result<(), ImportError> {
         self.now.to_world *= by;
-        if self.now.to_world.is_finite() {
+        let is_sound = |number: f64| number.abs() <= tokens::GREATEST;
+        if self.now.to_world.to_cols_array().into_iter().all(is_sound) {
             return Ok(());
         }
-        Err(place.error("the transform is no longer finite: use smaller numbers"))
+        Err(place.error("the transform has numbers beyond 1e30: use smaller ones"))
     }
 
     fn check_regular(&self, place: &Place) -> Result<(), ImportError> {

@@ -138,12 +138,15 @@ fn ends_word(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | b'"' | b'[' | b']')
 }
 
-/// The number that a bare word is; only finite ones.
+/// Greatest magnitude of a number: products of a few such numbers stay finite.
+pub(super) const GREATEST: f64 = 1e30;
+
+/// The number that a bare word is, if that is within [`GREATEST`].
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     // Rust also takes `inf`, `nan` and their like for numbers.
     let is_plain = word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
     let number: f64 = std::str::from_utf8(word).ok().filter(|_| is_plain)?.parse().ok()?;
-    number.is_finite().then_some(number)
+    (number.abs() <= GREATEST).then_some(number)
 }
 
 #[cfg(test)]
@@ -189,11 +192,11 @@ mod tests {
     }
 
     #[test]
-    fn only_finite_numbers_are_numbers() {
+    fn only_numbers_to_compute_with_are_numbers() {
         for (word, value) in [("1", 1.0), ("-.5", -0.5), ("+2.", 2.0), ("1e-3", 1e-3), ("0012", 12.0)] {
             assert_eq!(number(word.as_bytes()), Some(value), "{word}");
         }
-        for word in ["", "-", "inf", "NaN", "1e999", "0x10", "1,5", "true", "e"] {
+        for word in ["", "-", "inf", "NaN", "1e999", "1e31", "0x10", "1,5", "true", "e"] {
             assert_eq!(number(word.as_bytes()), None, "{word}");
         }
     }

@@ -170,13 +170,16 @@ fn nothing_grows_without_bound() {
     let deep = "<bsdf type=\"twosided\">".repeat(200) + &"</bsdf>".repeat(200);
     assert!(refusal(&deep).contains("nested deeper"), "{}", refusal(&deep));
     // Materials that refer to the one before twice stand once each.
-    let mut tower = String::from("<bsdf type=\"diffuse\" id=\"m0\"/>");
-    for n in 1..25 {
-        let below = n - 1;
-        tower += &format!(
-            "<bsdf type=\"blendbsdf\" id=\"m{n}\"><float name=\"weight\" value=\"0.5\"/><ref id=\"m{below}\"/><ref id=\"m{below}\"/></bsdf>"
-        );
-    }
-    let imported = import(&(tower + "<shape type=\"sphere\"><ref id=\"m24\"/></shape>"));
-    assert_eq!(imported.description.materials.len(), 25);
+    let tower = |height: usize| {
+        let mut tower = String::from("<bsdf type=\"diffuse\" id=\"m0\"/>");
+        for n in 1..height {
+            let below = n - 1;
+            tower += &format!(
+                "<bsdf type=\"blendbsdf\" id=\"m{n}\"><float name=\"weight\" value=\"0.5\"/><ref id=\"m{below}\"/><ref id=\"m{below}\"/></bsdf>"
+            );
+        }
+        tower + &format!("<shape type=\"sphere\"><ref id=\"m{}\"/></shape>", height - 1)
+    };
+    assert_eq!(import(&tower(8)).description.materials.len(), 8);
+    assert!(refusal(&tower(25)).contains("mixed of more than 256 parts"));
 }

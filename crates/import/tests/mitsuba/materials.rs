@@ -119,9 +119,9 @@ fn what_is_done_instead_is_told() {
             "the surface is smooth",
         ),
         (
-            r#"<bsdf type="conductor"><string name="material" value="Hg"/></bsdf>"#,
+            r#"<bsdf type="conductor"><string name="material" value="Se"/></bsdf>"#,
             NoteKind::Unsupported,
-            "the metal `Hg` is not known",
+            "the metal `Se` is not known",
         ),
         (
             r#"<bsdf type="plastic"><rgb name="diffuse_reflectance" value="1.5,0,0"/></bsdf>"#,

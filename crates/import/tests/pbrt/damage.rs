@@ -46,25 +46,35 @@ const SCRAPS: [&str; 24] = [
 
 fn damaged(text: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = text.to_vec();
-    for _ in 0..=random.below(4) {
+    for _ in 0..=random.below(3) {
         let place = random.below(bytes.len());
-        match random.below(5) {
+        // Mostly whole words are hit, so that some of the damage is found later than by the parser.
+        let is_blank = |&byte: &u8| byte == b' ' || byte == b'\n';
+        let blank = bytes[place..].iter().position(is_blank).map_or(place, |length| place + length);
+        match random.below(6) {
             0 => bytes[place] = random.below(256) as u8,
-            1 => bytes.truncate(place.max(1)),
-            2 => {
+            1 => bytes[place] = b"0123456789.-"[random.below(12)],
+            2 if random.below(8) == 0 => bytes.truncate(place.max(1)),
+            2 | 3 => {
+                let line =
+                    |from: usize| bytes[from..].iter().position(|&byte| byte == b'\n').map(|n| from + n);
+                if let Some(begin) = line(place) {
+                    let end = line(begin + 1).unwrap_or(bytes.len());
+                    let copy = bytes[begin..end].to_vec();
+                    match random.below(2) {
+                        0 => drop(bytes.drain(begin..end)),
+                        _ => drop(bytes.splice(begin..begin, copy)),
+                    }
+                }
+            }
+            4 => {
                 let end = (place + random.below(40)).min(bytes.len());
                 bytes.drain(place..end);
                 bytes.push(b' ');
             }
-            3 => {
-                let end = (place + random.below(80)).min(bytes.len());
-                let copy = bytes[place..end].to_vec();
-                let to = random.below(bytes.len());
-                bytes.splice(to..to, copy);
-            }
             _ => {
                 let scrap = SCRAPS[random.below(SCRAPS.len())];
-                bytes.splice(place..place, scrap.bytes());
+                bytes.splice(blank..blank, [b" ", scrap.as_bytes(), b" "].concat());
             }
         }
     }
@@ -98,15 +108,17 @@ fn survives(texts: &[Vec<u8>], rounds: usize, folder: &Path) {
         }
     }
     // Damage that leaves some scenes sound also reaches what comes after the words.
-    assert!(read > rounds / 50, "{read} of {rounds}");
+    assert!(read > rounds / 20, "{read} of {rounds}");
 }
 
 #[test]
 fn damaged_scenes_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let benches = ["A.pbrt", "C.pbrt", "E.pbrt", "F_R.pbrt"].into_iter().filter_map(bench);
+    let benches = ["C.pbrt", "E.pbrt", "F_R.pbrt"].into_iter().filter_map(bench);
     let texts: Vec<Vec<u8>> = std::iter::once(EVERYTHING.as_bytes().to_vec()).chain(benches).collect();
-    survives(&texts, 5000, folder.path());
+    let rounds =
+        if std::env::var("TYNDALL_PROOF").is_ok_and(|effort| effort == "full") { 50_000 } else { 3000 };
+    survives(&texts, rounds, folder.path());
 }
 
 #[test]

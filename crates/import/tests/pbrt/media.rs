@@ -40,8 +40,9 @@ fn a_medium_in_a_box_or_a_sphere_needs_no_surface() {
     );
     assert!(boxed.is_whole() && boxed.imported.description.camera.inside.is_none());
 
-    let turned =
-        world(&format!("{FOG} Rotate 45 0 1 0 MediumInterface \"fog\" \"\" Material \"interface\" {BOX}"));
+    let turned = world(&format!(
+        "{FOG} Translate 0 0 9 Rotate 45 0 1 0 MediumInterface \"fog\" \"\" Material \"interface\" {BOX}"
+    ));
     assert!(only(&turned.imported.description).transform.is_some());
 
     let ball = world(&format!(

@@ -57,10 +57,14 @@ fn the_screen_window_says_what_is_seen() {
 fn scales_before_a_camera_scale_what_it_sees() {
     // The world at half size before the camera: an orthographic screen of 2 is 4 in the world.
     let text = "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100
-        Scale -0.5 0.5 0.5 LookAt 0 0 5 0 0 0 0 1 0 Camera \"orthographic\" \"float lensradius\" 0.1 \"float focaldistance\" 3";
-    let view = camera(text);
+        Scale -0.5 0.5 0.5 LookAt 0 0 5 0 0 0 0 1 0 Camera ";
+    let view = camera(&format!("{text}\"orthographic\""));
     assert_eq!(view.projection, Projection::Orthographic);
     assert!(near(view.height.unwrap(), 4.0), "{view:?}");
+    let view = camera(&format!(
+        "{text}\"perspective\" \"float fov\" 30 \"float lensradius\" 0.1 \"float focaldistance\" 3"
+    ));
+    assert!(near(view.vertical_fov, 30.0), "{view:?}");
     assert!(near(view.aperture_radius, 0.2) && near(view.focus_distance.unwrap(), 6.0), "{view:?}");
 }
 

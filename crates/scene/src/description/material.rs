@@ -212,11 +212,12 @@ impl TextureDescription {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum TextureDescription {
-    /// A picture.
+    /// A picture. It and the checkerboard come first: they are known by a key that they need, which spectra, having none,
+    /// would leave aside.
     Image(ImageTexture),
     /// Two values in turns.
     Checker(CheckerTexture),
-    /// The same everywhere. Last, as a table with other keys would pass for a spectrum without any.
+    /// The same everywhere.
     Constant(SpectrumDescription),
 }
 

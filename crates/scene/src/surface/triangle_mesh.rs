@@ -70,11 +70,11 @@ impl TriangleMesh {
             });
             let (triangle, hit) = nearest?;
             let reach = self.size + ray.origin.abs().max_element();
-            let is_certain = hit.spread * ray.direction.length() < UNCERTAIN * reach;
-            if is_certain && hit.weights.iter().all(|weight| *weight > NEAR_EDGE) {
+            let certain = UNCERTAIN * reach / ray.direction.length();
+            if hit.spread < certain && hit.weights.iter().all(|weight| *weight > NEAR_EDGE) {
                 return Some(local(triangle, &hit));
             }
-            match self.among_equals(ray, &sheared, begin, hit.t + hit.spread) {
+            match self.among_equals(ray, &sheared, begin, hit.t + hit.spread, certain) {
                 (Some(hit), _) => return Some(hit).filter(|hit| hit.t < end),
                 (None, last) => begin = last,
             }
@@ -82,7 +82,7 @@ impl TriangleMesh {
     }
 
     /// Of the hits that may be before `last`, and those that may be before these, the nearest that leads the way of the
-    /// majority, if there is one; and the end of them all.
+    /// majority, if there is one, rather one of a distance that is `certain`; and the end of them all.
     #[cold]
     fn among_equals(
         &self,
@@ -90,11 +90,12 @@ impl TriangleMesh {
         sheared: &ShearedRay,
         begin: f64,
         last: f64,
+        certain: f64,
     ) -> (Option<LocalHit>, f64) {
         let mut last = last;
         loop {
             let (mut balance, mut end) = (0, last);
-            let mut nearest: [Option<LocalHit>; 2] = [None; 2];
+            let mut nearest: [Option<(bool, LocalHit)>; 2] = [None; 2];
             self.bvh.traverse(ray, last, |triangle, last| {
                 if let Some(hit) = sheared.intersect(self.corners(triangle))
                     && hit.t > begin
@@ -103,8 +104,9 @@ impl TriangleMesh {
                     balance += if hit.enters { 1 } else { -1 };
                     end = end.max(hit.t + hit.spread);
                     let slot = &mut nearest[usize::from(hit.enters)];
-                    if slot.is_none_or(|slot| hit.t < slot.t) {
-                        *slot = Some(local(triangle, &hit));
+                    let rank = (hit.spread >= certain, hit.t);
+                    if slot.is_none_or(|(is_uncertain, slot)| rank < (is_uncertain, slot.t)) {
+                        *slot = Some((rank.0, local(triangle, &hit)));
                     }
                 }
                 last
@@ -118,7 +120,7 @@ impl TriangleMesh {
                 Ordering::Less => nearest[0],
                 Ordering::Equal => None,
             };
-            return (majority, last);
+            return (majority.map(|(_, hit)| hit), last);
         }
     }
 

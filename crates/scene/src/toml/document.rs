@@ -1,7 +1,7 @@
 //! A scene file as text and tree: read, changed by `--set` options, checked and made a description.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use miette::NamedSource;
 use toml::de::{DeTable, DeValue};
@@ -97,7 +97,8 @@ impl SceneDocument {
 
     /// The description, if the document is a sound scene; else everything that is wrong with it.
     pub fn description(&self) -> Result<SceneDescription, SceneError> {
-        let mut problems = conformance::problems(&self.root, "the scene", &json_schema());
+        static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(json_schema);
+        let mut problems = conformance::problems(&self.root, "the scene", &SCHEMA);
         problems.sort_by_key(|problem| problem.position);
         SceneError::unless_empty(problems)?;
 

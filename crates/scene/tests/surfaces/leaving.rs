@@ -63,7 +63,8 @@ fn a_ray_does_not_meet_the_place_it_left() {
                 let side = if random.f64() < 0.5 { 1.0 } else { -1.0 };
                 let direction = (along + hit.normal * (side * sine)).normalize();
                 let ray = Ray { origin: hit.leave(direction), direction };
-                assert!((ray.origin - hit.position).length() < 1e-9 * (size + 3.0 * shift), "{shape}");
+                let greatest = size + 3.0 * shift + hit.position.length();
+                assert!((ray.origin - hit.position).length() < 1e-9 * greatest, "{shape}");
                 let Some(again) = surfaces.intersect(&ray, f64::INFINITY) else { continue };
                 let what = format!("{shape}, size {size}, shift {shift}, sine {sine}, side {side}");
                 let is_inside = direction.dot(hit.normal) < 0.0;

@@ -4,6 +4,7 @@ mod building;
 mod closed_shapes;
 mod crossings;
 mod leaving;
+mod messages;
 mod places;
 
 use std::path::Path;
