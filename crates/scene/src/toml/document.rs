@@ -1,7 +1,7 @@
 //! A scene file as text and tree: read, changed by `--set` options, checked and made a description.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use miette::NamedSource;
 use toml::de::{DeTable, DeValue};
@@ -11,6 +11,9 @@ use super::schema::json_schema;
 use super::tree::{Entry, Node, Place, Value};
 use crate::SceneDescription;
 use crate::error::{Problem, SceneError};
+
+/// The schema of scene files, made once: it is long.
+static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(json_schema);
 
 /// Scene files are written by people or small programs; one of this size is something else.
 const GREATEST_FILE: u64 = 16 << 20;
@@ -97,7 +100,7 @@ impl SceneDocument {
 
     /// The description, if the document is a sound scene; else everything that is wrong with it.
     pub fn description(&self) -> Result<SceneDescription, SceneError> {
-        let mut problems = conformance::problems(&self.root, "the scene", &json_schema());
+        let mut problems = conformance::problems(&self.root, "the scene", &SCHEMA);
         problems.sort_by_key(|problem| problem.position);
         SceneError::unless_empty(problems)?;
 
