@@ -1,27 +1,32 @@
-//! `tyndall convert`: a volume file in another format.
+//! `tyndall convert`: a volume file in another format, or a scene of another renderer as Tyndall's own.
 
-use std::path::PathBuf;
+mod scene;
+
+use std::path::{Path, PathBuf};
 
 use miette::{bail, miette};
 use tyndall_volumes::{Codec, Format, WriteOptions};
 
+use crate::imported::{ImportArgs, is_foreign};
 use crate::output::check_writable;
 use crate::terminal::{answer, tell};
 use crate::volume_input::{self, RawArgs};
 
-/// Write a volume in another format, chosen by the extension
+/// Write a volume in another format, chosen by the extension, or a scene of pbrt or Mitsuba as a scene file
 ///
 /// .vdb and .nvdb hold any number of sparse grids as they are. The others hold one dense array: the box around the
-/// active voxels of one grid, as 32-bit floats.
+/// active voxels of one grid, as 32-bit floats. A scene (.pbrt .xml) becomes a .toml; meshes and grids that it writes out
+/// itself become files in a folder beside it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   tyndall convert smoke.nvdb smoke.vdb
   tyndall convert fire.vdb fire_half.vdb --grid density --grid temperature --half --codec zip
   tyndall convert fire.vdb density.npy --grid density
+  tyndall convert scene.pbrt scene.toml
   tyndall convert head.raw head.vdb --raw-shape 256x256x109 --raw-type uint8")]
 pub struct Args {
-    /// A volume: .vdb .nvdb .vol .npy .nii .nii.gz .raw
+    /// A volume: .vdb .nvdb .vol .npy .nii .nii.gz .raw; or a scene: .pbrt .xml
     input: PathBuf,
     /// Where to write it, with one of these extensions
     output: PathBuf,
@@ -36,6 +41,8 @@ pub struct Args {
     codec: Option<CodecName>,
     #[command(flatten)]
     raw: RawArgs,
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -50,6 +57,22 @@ enum CodecName {
 
 /// Reads, writes, and says what was written.
 pub fn run(args: Args) -> miette::Result<()> {
+    let is_scene_file = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    if is_foreign(&args.input) || is_scene_file(&args.input) || is_scene_file(&args.output) {
+        if !is_foreign(&args.input) || !is_scene_file(&args.output) {
+            bail!(
+                "{} to {}: only scenes of pbrt and Mitsuba (.pbrt .xml) become scene files (.toml); `tyndall render \
+                 --print-scene` prints the scene of a volume or a .toml",
+                args.input.display(),
+                args.output.display()
+            );
+        }
+        if !args.grid.is_empty() || args.half || args.codec.is_some() || args.raw.is_given() {
+            bail!("{}: --grid, --half, --codec and --raw-shape are for volumes", args.input.display());
+        }
+        return scene::convert(&args.input, &args.output, &args.import);
+    }
+    args.import.refuse(&args.input)?;
     let format = Format::from_extension(&args.output);
     if args.codec.is_some() && !matches!(format, Some(Format::OpenVdb | Format::NanoVdb)) {
         bail!("{}: --codec is for .vdb and .nvdb; leave it out", args.output.display());

@@ -15,6 +15,7 @@ use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 use tyndall_scene::{Ray, Scene, SceneDescription, build};
 
+use crate::imported::ImportArgs;
 use crate::output::check_writable;
 use crate::render::input;
 use crate::terminal::{answer, tell};
@@ -35,7 +36,7 @@ Examples:
   tyndall estimators smoke.vdb --ray 0,0,5,0,0,-1        from a point in a direction
   tyndall estimators smoke.toml --pictures               whole pictures by each of them as well")]
 pub struct Args {
-    /// Scene file (.toml) or volume file; the built-in cumulus if left out
+    /// Scene file (.toml, or .pbrt and Mitsuba's .xml) or volume file; the built-in cumulus if left out
     input: Option<PathBuf>,
     /// Write a report with plots: .html, or .svg for the plots alone
     #[arg(short, long, value_name = "FILE", value_parser = parse_output)]
@@ -74,6 +75,8 @@ pub struct Args {
     set: Vec<String>,
     #[command(flatten)]
     raw: RawArgs,
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 /// What was found.
@@ -92,7 +95,7 @@ struct Report {
 /// Samples, and prints or writes what came of it.
 pub fn run(args: Args) -> miette::Result<()> {
     check_writable(args.output.as_deref())?;
-    let input = input::load(args.input.as_deref(), &args.set, &args.raw)?;
+    let input = input::load(args.input.as_deref(), &args.set, &args.raw, &args.import)?;
     let built = build(&input.description, &input.folder)?;
     let mut notes: Vec<String> = input.notes.iter().chain(&built.notes).map(ToString::to_string).collect();
     if built.scene.is_chromatic() {
@@ -135,7 +138,7 @@ fn report(
             seed,
             threads: args.threads.map_or(cores, usize::from),
         };
-        pictures::render_all(scene, &description.camera, options, |name| tell(format!("picture by {name}")))
+        pictures::render_all(scene, description, options, |name| tell(format!("picture by {name}")))
     });
     Ok(Report {
         scene: name,

@@ -1,5 +1,6 @@
 //! `tyndall inspect`: what is in a volume file or a scene.
 
+mod contents;
 mod report;
 mod scene;
 mod table;
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 
 use miette::{IntoDiagnostic, miette};
 
+use crate::imported::{ImportArgs, is_foreign};
 use crate::render::input;
 use crate::terminal::answer;
 use crate::volume_input::{self, RawArgs};
@@ -20,9 +22,10 @@ Examples:
   tyndall inspect smoke.vdb
   tyndall inspect smoke.vdb --grid density --probe=10,-3,7 --json
   tyndall inspect cloud.toml
+  tyndall inspect scene.pbrt --strict
   tyndall inspect head.raw --raw-shape 256x256x109 --raw-type uint8")]
 pub struct Args {
-    /// A volume (.vdb .nvdb .vol .npy .nii .nii.gz .raw) or a scene (.toml)
+    /// A volume (.vdb .nvdb .vol .npy .nii .nii.gz .raw) or a scene (.toml, or .pbrt and Mitsuba's .xml)
     file: PathBuf,
     /// Only this grid; may be given several times
     #[arg(long, value_name = "NAME")]
@@ -35,13 +38,17 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     raw: RawArgs,
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 /// Reads and prints.
 pub fn run(args: Args) -> miette::Result<()> {
-    if args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+    let is_native = args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if is_native || is_foreign(&args.file) {
         return inspect_scene(&args);
     }
+    args.import.refuse(&args.file)?;
     let file = volume_input::read(&args.file, &args.grid, &args.raw)?;
     let report = Report::new(&file, &args.probe);
     if args.json {
@@ -58,7 +65,7 @@ fn inspect_scene(args: &Args) -> miette::Result<()> {
             args.file.display()
         ));
     }
-    let input = input::load(Some(&args.file), &[], &args.raw)?;
+    let input = input::load(Some(&args.file), &[], &args.raw, &args.import)?;
     let report = scene::SceneReport::new(&input)?;
     if args.json {
         answer(serde_json::to_string(&report).into_diagnostic()? + "\n")

@@ -4,6 +4,7 @@ mod convert;
 mod diff;
 mod effort;
 mod estimators;
+mod imported;
 mod inspect;
 mod interrupt;
 mod measure;

@@ -14,6 +14,7 @@ use tyndall_transport::{Measurement, measure};
 
 use crate::Done;
 use crate::effort::Effort;
+use crate::imported::ImportArgs;
 use crate::interrupt::cancel_on_interrupt;
 use crate::render::input;
 use crate::terminal::{answer, tell};
@@ -37,7 +38,7 @@ A meter in a scene file, for the layer between y = 0 and 1 under a beam:
   top = 1
   direction = [0, -1, 0]")]
 pub struct Args {
-    /// Scene file (.toml)
+    /// Scene file (.toml, or .pbrt and Mitsuba's .xml)
     input: PathBuf,
     #[command(flatten)]
     effort: Effort,
@@ -47,6 +48,8 @@ pub struct Args {
     /// Answer in JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 /// What one meter has measured.
@@ -59,7 +62,7 @@ pub struct Reading<'a> {
 
 /// Measures with one meter after the other, and prints.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = input::load(Some(&args.input), &args.set, &RawArgs::default())?;
+    let input = input::load(Some(&args.input), &args.set, &RawArgs::default(), &args.import)?;
     let description = &input.description;
     let shown = args.input.display();
     if description.meters.is_empty() {

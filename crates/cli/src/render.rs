@@ -11,16 +11,18 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_film::{Accumulation, Colours, Film, ImageMetadata, Layers};
-use tyndall_scene::description::{Integrator, Layer, SceneDescription};
+use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
+use tyndall_scene::description::{FilmDescription, Integrator, Layer, SceneDescription};
 use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
+use crate::imported::ImportArgs;
 use crate::output::{Output, check_writable, parse_exposure, write_all};
 use crate::terminal::{answer, tell};
 use crate::volume_input::RawArgs;
 use estimators::EstimatorArgs;
+use input::Input;
 use progress::{Progress, ProgressStyle};
 use stop::{Goal, Plan};
 
@@ -38,7 +40,7 @@ Examples:
   tyndall render smoke.toml -o part.acc --samples 64..128            a share of the work, for `tyndall merge`
   tyndall render smoke.toml -o smoke.exr --checkpoint smoke.acc --resume")]
 pub struct Args {
-    /// Scene file (.toml) or volume file; the built-in cumulus if left out
+    /// Scene file (.toml, or .pbrt and Mitsuba's .xml) or volume file; the built-in cumulus if left out
     input: Option<PathBuf>,
     /// Where to write the picture: .exr, .png, .acc or .json; may be given several times
     #[arg(short, long, value_name = "FILE")]
@@ -82,6 +84,8 @@ pub struct Args {
     print_scene: bool,
     #[command(flatten)]
     raw: RawArgs,
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 impl Args {
@@ -104,16 +108,23 @@ impl Args {
             progress: ProgressStyle::default(),
             print_scene: false,
             raw: RawArgs::default(),
+            import: ImportArgs::default(),
         }
     }
 }
 
 /// Loads, builds, renders, writes.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw)?;
+    let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw, &args.import)?;
     let description = &input.description;
+    if args.resolution.is_some() && description.film.crop.is_some() {
+        return Err(miette!(
+            "--resolution: the scene has film.crop, which counts pixels of its own resolution; give both as --set \
+             film.resolution=[W,H] --set film.crop=[LEFT,TOP,W,H]"
+        ));
+    }
     if args.print_scene {
-        return answer(&input.text).map(|()| Done::All);
+        return print_scene(&input).map(|()| Done::All);
     }
     let observers = observers(description);
     let colours = colours(observers[0]);
@@ -128,7 +139,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
     }
     check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
 
-    let [width, height] = description.film.resolution;
+    let [width, height] = description.film.picture_size();
     // First of all, as it may be too large for this machine.
     let new_film = || Film::new(width, height, layers(description)).into_diagnostic();
     let films = observers.iter().map(|_| new_film()).collect::<miette::Result<Vec<Film>>>()?;
@@ -168,6 +179,19 @@ pub fn run(args: Args) -> miette::Result<Done> {
     Ok(end)
 }
 
+/// `--print-scene`: what is not as in the renderer that the scene is for is told as well.
+fn print_scene(input: &Input) -> miette::Result<()> {
+    if let Some(written) = &input.written {
+        input.notes.iter().for_each(|note| tell(format!("note: {note}")));
+        if !written.paths().is_empty() {
+            tell(
+                "note: files in the folder of temporary files are gone after this; `tyndall convert` keeps them",
+            );
+        }
+    }
+    answer(&input.text)
+}
+
 /// What the channels of an observer's film are.
 fn colours(observer: Observer) -> Colours {
     match observer {
@@ -175,6 +199,11 @@ fn colours(observer: Observer) -> Colours {
         Observer::SpectralXyz => Colours::Xyz,
         Observer::Bands(wavelengths_nm) => Colours::Bands(wavelengths_nm),
     }
+}
+
+/// Where the picture lies in the whole.
+fn crop(film: &FilmDescription) -> Option<Crop> {
+    film.crop.map(|[left, top, ..]| Crop { corner: [left, top], full_size: film.resolution })
 }
 
 /// The options that stand for keys of the scene, as `--set` would give them.
@@ -213,6 +242,7 @@ fn open_picture(
         ),
         seed: u64::from(description.render.seed),
         colours: colours(observer),
+        crop: crop(&description.film),
         seconds: 0.0,
     };
     let empty = Accumulation { film, metadata };
@@ -237,14 +267,22 @@ fn open_picture(
     Ok(saved)
 }
 
+/// The layers that the scene asks for; if it does not say, those that are about something in it. Shadow catchers always
+/// have theirs, which the picture's alpha needs.
 fn layers(description: &SceneDescription) -> Layers {
-    let wanted = |layer| description.film.layers.as_ref().is_none_or(|layers| layers.contains(&layer));
+    let asked = description.film.layers.as_ref();
+    let wanted = |layer| asked.is_none_or(|layers| layers.contains(&layer));
+    let of_surfaces = |layer| wanted(layer) && (asked.is_some() || !description.shapes.is_empty());
+    let has_catcher = description.shapes.iter().any(|shape| shape.shadow_catcher);
     Layers {
         depth: wanted(Layer::Depth),
         albedo: wanted(Layer::Albedo),
         emission: wanted(Layer::Emission),
         single: wanted(Layer::Single),
         multiple: wanted(Layer::Multiple),
+        normal: of_surfaces(Layer::Normal),
+        object_id: of_surfaces(Layer::ObjectId),
+        shadow_catcher: has_catcher || asked.is_some_and(|layers| layers.contains(&Layer::ShadowCatcher)),
     }
 }
 

@@ -9,6 +9,8 @@ use std::io::{ErrorKind, Write};
 use miette::{Diagnostic, Report, miette};
 use tyndall_scene::SceneError;
 
+use crate::imported::Unsupported;
+
 /// Writes an answer to standard output.
 pub fn answer(text: impl Display) -> miette::Result<()> {
     let mut out = std::io::stdout().lock();
@@ -37,7 +39,10 @@ pub fn tell_error(report: &Report) {
                 tell(format!("  {margin} | {text}\n  {:width$} | {marker}", "", width = margin.len()));
             }
         }),
-        None => tell(error_line(report)),
+        None => match report.downcast_ref::<Unsupported>() {
+            Some(Unsupported(lines)) => lines.iter().for_each(|line| tell(error_line(line))),
+            None => tell(error_line(report)),
+        },
     }
 }
 

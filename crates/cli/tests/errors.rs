@@ -26,6 +26,8 @@ fn files_that_cannot_be_read_are_named() {
     folder.write("empty.acc", "");
     folder.write("empty.exr", "");
     folder.write("notes.txt", "not a volume");
+    folder.write("wrong.pbrt", "Camera\n\"perspective\" \"float fov\" [1\n");
+    folder.write("wrong.xml", "<scene>\n<sensor>\n</scene>");
     folder.write("latin1.toml", b"unit = \"\xb5m\"");
     std::fs::create_dir(folder.path("folder.vdb")).unwrap();
     for (line, words) in [
@@ -44,8 +46,19 @@ fn files_that_cannot_be_read_are_named() {
         ("render empty.exr", ["empty.exr", "give a .toml scene"]),
         ("render scene.pbrt", ["scene.pbrt", "no such file"]),
         ("render latin1.toml", ["latin1.toml", "UTF-8"]),
+        ("render wrong.pbrt", ["wrong.pbrt:", ""]),
+        ("inspect wrong.xml", ["wrong.xml:", ""]),
+        ("measure wrong.pbrt", ["wrong.pbrt:", ""]),
+        ("render wrong.pbrt -D a=1", ["wrong.pbrt", "--define is for Mitsuba scenes"]),
+        ("render scene.toml --strict", ["scene.toml", "--strict is for scenes of other renderers"]),
+        ("inspect notes.txt -D a=1", ["notes.txt", "--define is for scenes of other renderers"]),
+        ("convert nosuch.pbrt a.toml", ["nosuch.pbrt", "no such file"]),
+        ("convert wrong.xml a.vdb", ["wrong.xml", "become scene files (.toml)"]),
+        ("convert scene.toml a.toml", ["scene.toml", "--print-scene"]),
+        ("convert wrong.pbrt a.toml --half", ["wrong.pbrt", "--half"]),
         ("inspect scene.toml --grid density", ["scene.toml", "--grid"]),
         ("render scene.toml --raw-shape 1x1x1 --raw-type uint8", ["scene.toml", "--raw-shape"]),
+        ("render wrong.xml --raw-shape 1x1x1 --raw-type uint8", ["wrong.xml", "--raw-shape"]),
     ] {
         refused(&folder, line, &words);
         is_one_line(&folder, line);
@@ -86,6 +99,7 @@ fn wrong_usage_ends_with_code_2() {
         "render scene.toml --threads 0",
         "render scene.toml --exposure nan",
         "render scene.toml --resume",
+        "render scene.xml -D spp",
         "render scene.toml -o a.jpg",
         "merge -o a.exr",
         "merge a.acc",
@@ -105,6 +119,8 @@ fn pictures_beyond_all_memory_are_refused_before_anything_else() {
     let long = "render scene.toml --set volume.0.procedural.resolution=2048";
     refused(&folder, &format!("{long} --resolution 65536x65536"), &["65536x65536", "268435456"]);
     refused(&folder, &format!("{long} --set film.resolution=[65536,65536]"), &["65536x65536"]);
+    let cropped = "render scene.toml --set film.crop=[0,0,8,8] --resolution 64x48";
+    refused(&folder, cropped, &["--resolution", "film.crop"]);
 }
 
 #[test]
@@ -147,6 +163,7 @@ fn mistakes_in_set_options_are_shown_with_the_option() {
         ("volume.0.mu_t=nan", ["--set volume.0.mu_t=nan", "finite"]),
         ("volume.0.mu_t", ["--set volume.0.mu_t", "path.to.key=value"]),
         ("=3", ["--set =3", "path.to.key=value"]),
+        ("film.crop=[30,0,3,3]", ["--set film.crop=[30,0,3,3]", "no part of the 32x24 pixels"]),
         ("film.resolution=[0,9]", ["--set film.resolution=[0,9]", "from 1"]),
     ] {
         refused(&folder, &format!("render scene.toml --set {set}"), &words);

@@ -61,6 +61,19 @@ fn merged_parts_are_the_whole_and_make_the_same_picture() {
 }
 
 #[test]
+fn a_crop_is_a_picture_of_its_own_size_in_the_window_of_the_whole() {
+    let folder = Folder::new();
+    folder.done("render scene.toml --set film.crop=[8,6,10,12] -o part.acc -o part.exr");
+    let part = folder.accumulation("part.acc");
+    assert_eq!((part.film.width(), part.film.height()), (10, 12));
+    assert!(part.film.mean(5, 6) != [0.0; 3]);
+    let windows = exr::meta::MetaData::read_from_file(folder.path("part.exr"), false).unwrap();
+    let header = &windows.headers[0];
+    assert_eq!(header.own_attributes.layer_position, exr::math::Vec2(8, 6));
+    assert_eq!(header.shared_attributes.display_window.size, exr::math::Vec2(32, 24));
+}
+
+#[test]
 fn estimators_are_chosen_by_name_and_take_the_reference_integrator() {
     let folder = Folder::new();
     folder.done("render scene.toml --integrator reference -o default.acc");

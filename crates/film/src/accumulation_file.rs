@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! 8 bytes   "TYNDALL\x1a"
-//! u32       version of the format, 1
+//! u32       version of the format, 2; files of version 1 have the first six planes only, and are read too
 //! u32       length of the header in bytes
 //! header    JSON: size, layers, planes, ranges of samples, progress of an interrupted pass, metadata
 //! blocks    for each plane, every 1000 pixels: u32 length, then LZ4 (block format)
@@ -12,9 +12,10 @@
 //! ```
 //!
 //! A plane holds one record a pixel: `pixels` 128 bytes (Σx of R, G, B as i128; Σx² of R, G, B as 192 bits; u64
-//! hits), `depth` 16, `albedo` 24, `emission`, `single` and `multiple` 48. Planes of zeros are left out. Before
-//! compression the bytes of a block are transposed, all first bytes of its records, then all second ones: the high
-//! bytes of neighbouring sums are equal, most of them zero, and compress well.
+//! hits), `depth` 16, `albedo` 24, `emission`, `single` and `multiple` 48, `normal` 24, `object` 4 (u32), `catcher` 40
+//! (Σ of both lights as i128; u64 rays). Planes of zeros are left out. Before compression the bytes of a block are
+//! transposed, all first bytes of its records, then all second ones: the high bytes of neighbouring sums are equal, most
+//! of them zero, and compress well.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -32,7 +33,9 @@ use crate::sample::Layers;
 use crate::sums::Sums;
 
 const MAGIC: &[u8; 8] = b"TYNDALL\x1a";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+/// The oldest version that is read.
+const OLDEST_VERSION: u32 = 1;
 
 /// A film and how its samples were made: what an `.acc` file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +73,9 @@ enum Plane {
     Emission,
     Single,
     Multiple,
+    Normal,
+    Object,
+    Catcher,
 }
 
 impl Accumulation {
@@ -132,6 +138,9 @@ impl Accumulation {
             (Plane::Emission, !sums.emission.is_empty()),
             (Plane::Single, !sums.single.is_empty()),
             (Plane::Multiple, !sums.multiple.is_empty()),
+            (Plane::Normal, !sums.normal.is_empty()),
+            (Plane::Object, !sums.object.is_empty()),
+            (Plane::Catcher, !sums.catcher.is_empty()),
         ];
         let header = Header {
             width: film.width,
@@ -158,6 +167,9 @@ impl Accumulation {
                 Plane::Emission => encode_plane(&mut file, &sums.emission)?,
                 Plane::Single => encode_plane(&mut file, &sums.single)?,
                 Plane::Multiple => encode_plane(&mut file, &sums.multiple)?,
+                Plane::Normal => encode_plane(&mut file, &sums.normal)?,
+                Plane::Object => encode_plane(&mut file, &sums.object)?,
+                Plane::Catcher => encode_plane(&mut file, &sums.catcher)?,
             }
         }
         let sum = file.crc.sum();
@@ -177,10 +189,10 @@ impl Accumulation {
         }
         let (version, rest) = content[MAGIC.len()..].split_first_chunk().ok_or(DAMAGED)?;
         let version = u32::from_le_bytes(*version);
-        if version != VERSION {
+        if !(OLDEST_VERSION..=VERSION).contains(&version) {
             return Err(format!(
-                "has version {version} of the .acc format, and this program reads version {VERSION}; use the \
-                 program that wrote it"
+                "has version {version} of the .acc format, and this program reads versions {OLDEST_VERSION} to \
+                 {VERSION}; use the program that wrote it"
             ));
         }
         let (length, rest) = rest.split_first_chunk().ok_or(DAMAGED)?;
@@ -208,6 +220,9 @@ impl Header {
                 Plane::Emission => decode_plane(blocks, &mut sums.emission, count),
                 Plane::Single => decode_plane(blocks, &mut sums.single, count),
                 Plane::Multiple => decode_plane(blocks, &mut sums.multiple, count),
+                Plane::Normal => decode_plane(blocks, &mut sums.normal, count),
+                Plane::Object => decode_plane(blocks, &mut sums.object, count),
+                Plane::Catcher => decode_plane(blocks, &mut sums.catcher, count),
             }
             .map_err(|what| format!("has a bad plane {plane:?}: {what}"))?;
         }

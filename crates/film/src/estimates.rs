@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::film::Film;
 use crate::fixed_point::{SUM_FRACTION_BITS, sample_variance, to_f64};
-use crate::sums::{ALBEDO_FRACTION_BITS, DEPTH_FRACTION_BITS};
+use crate::sums::{ALBEDO_FRACTION_BITS, DEPTH_FRACTION_BITS, NORMAL_FRACTION_BITS};
 
 /// Weights of linear Rec.709 red, green and blue in luminance (ITU-R BT.709).
 pub const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -70,8 +70,9 @@ impl Film {
     ///
     /// The error of luminance Y is taken as Σ w·SE over the channels, which is exact where the channels vary
     /// together (as they do where a medium is grey) and otherwise too large. Black pixels have no relative error
-    /// and are left out. So are the pixels that no path met a medium in, as long as any did: sky behind a cloud is
-    /// known at once and would hide the noise of the rest. Infinite while most pixels have fewer than two samples.
+    /// and are left out. So are the pixels that no path met a medium or surface in, as long as any did: sky behind a
+    /// cloud is known at once and would hide the noise of the rest. Infinite while most pixels have fewer than two
+    /// samples.
     pub fn median_relative_error(&self) -> Option<f64> {
         let mut lit = false;
         let mut errors = Vec::new();
@@ -104,16 +105,26 @@ impl Film {
 
     /// All layers under the names they have in an EXR file.
     ///
-    /// `R G B` mean radiance; `A` fraction of camera paths that met a medium, `Transmittance` = 1 − A;
-    /// `StandardError.*`; `SampleCount`; and as far as they are kept, `Depth.Z` mean distance to the first
-    /// collision (+∞ where there was none), `Albedo.*` mean albedo there, and the mean radiance that media emit or
-    /// scatter, `Emission.*`, `Single.*`, `Multiple.*`.
+    /// `R G B` mean radiance; `A` coverage plus shadow; `Transmittance` = 1 − coverage; `StandardError.*`; `SampleCount`;
+    /// and as far as they are kept, `Depth.Z` mean distance to the first collision or surface (+∞ where there was none),
+    /// `Albedo.*` and `Normal.*` their means there (the normal of a collision counts as 0, and the mean is no unit
+    /// vector), the mean radiance that media emit or scatter, `Emission.*`, `Single.*`, `Multiple.*`, `ObjectId.Id` the
+    /// greatest number of the objects seen (exact up to 2^24), and `ShadowCatcher.A` the opacity of shadows.
+    ///
+    /// Coverage is the fraction of camera paths that met a medium or a surface other than a shadow catcher. With C the
+    /// reflected luminance of the camera rays that end on catchers,
+    ///
+    /// ```text
+    /// shadow opacity = 1 − Σ C / Σ C without shadows, in [0, 1]      A = coverage + shadow opacity · rays on catchers / n
+    /// ```
+    ///
+    /// so that the picture over a photograph, R + (1 − A) · photograph, darkens the photograph where shadows fall.
     pub fn channels(&self) -> Vec<Channel> {
         let mut channels = Vec::new();
         let sums = &self.sums;
         self.push_colour(&mut channels, "", |i, n| self.pixel_mean(i, n));
         self.push_colour(&mut channels, "StandardError.", |i, n| self.pixel_standard_error(i, n));
-        self.push(&mut channels, "A", |i, n| self.coverage(i, n));
+        self.push(&mut channels, "A", |i, n| self.alpha(i, n));
         self.push(&mut channels, "Transmittance", |i, n| 1.0 - self.coverage(i, n));
         self.push(&mut channels, "SampleCount", |_, n| n as f64);
         if self.layers.depth {
@@ -140,6 +151,19 @@ impl Film {
                 });
             }
         }
+        if self.layers.normal {
+            self.push_triple(&mut channels, "Normal.", ["X", "Y", "Z"], |i, _| {
+                let hits = sums.pixels[i].hits.max(1) as f64;
+                let normal = sums.normal.get(i).copied().unwrap_or_default();
+                normal.map(|x| to_f64((x as i64).into(), NORMAL_FRACTION_BITS) / hits)
+            });
+        }
+        if self.layers.object_id {
+            self.push(&mut channels, "ObjectId.Id", |i, _| sums.object.get(i).copied().unwrap_or(0).into());
+        }
+        if self.layers.shadow_catcher {
+            self.push(&mut channels, "ShadowCatcher.A", |i, _| self.shadow_opacity(i));
+        }
         channels
     }
 
@@ -150,14 +174,24 @@ impl Film {
     }
 
     fn push_colour(&self, channels: &mut Vec<Channel>, layer: &str, value: impl Fn(usize, u64) -> [f64; 3]) {
+        self.push_triple(channels, layer, ["R", "G", "B"], value);
+    }
+
+    fn push_triple(
+        &self,
+        channels: &mut Vec<Channel>,
+        layer: &str,
+        names: [&str; 3],
+        value: impl Fn(usize, u64) -> [f64; 3],
+    ) {
         let mut values = [(); 3].map(|()| Vec::with_capacity(self.sums.pixels.len()));
         self.for_each_pixel(|index, n| {
             for (plane, x) in values.iter_mut().zip(value(index, n)) {
                 plane.push(x as f32);
             }
         });
-        for (values, colour) in values.into_iter().zip(["R", "G", "B"]) {
-            channels.push(Channel { name: format!("{layer}{colour}"), values });
+        for (values, name) in values.into_iter().zip(names) {
+            channels.push(Channel { name: format!("{layer}{name}"), values });
         }
     }
 
@@ -188,6 +222,18 @@ impl Film {
 
     fn coverage(&self, index: usize, n: u64) -> f64 {
         self.sums.pixels[index].hits as f64 / n.max(1) as f64
+    }
+
+    fn alpha(&self, index: usize, n: u64) -> f64 {
+        let on_catcher = self.sums.catcher.get(index).map_or(0, |sums| sums.rays) as f64 / n.max(1) as f64;
+        self.coverage(index, n) + on_catcher * self.shadow_opacity(index)
+    }
+
+    /// 0 where no ray ended on a catcher, or on none that anything could light.
+    fn shadow_opacity(&self, index: usize) -> f64 {
+        let Some(sums) = self.sums.catcher.get(index) else { return 0.0 };
+        let [lit, unshadowed] = sums.light.map(|sum| to_f64(sum, SUM_FRACTION_BITS));
+        if unshadowed > 0.0 { (1.0 - lit / unshadowed).clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 
@@ -245,11 +291,15 @@ mod tests {
             hit: true,
             depth: 10.0,
             albedo: [0.5, 0.75, 1.0],
+            normal: [0.0, -1.0, 0.0],
+            object: 7,
+            catcher: [0.0; 2],
             emission: [1.0; 3],
             single: [0.5; 3],
             multiple: [1.5; 3],
         };
-        let film = film(&[&[hit, Sample { depth: 20.0, ..hit }, grey(1.0), grey(1.0)]]);
+        let other = Sample { depth: 20.0, normal: [0.0; 3], object: 16_777_213, ..hit };
+        let film = film(&[&[hit, other, grey(1.0), grey(1.0)]]);
         for (name, expected) in [
             ("R", 2.0),
             ("A", 0.5),
@@ -261,8 +311,30 @@ mod tests {
             ("Emission.G", 0.5),
             ("Single.G", 0.25),
             ("Multiple.G", 0.75),
+            ("Normal.X", 0.0),
+            ("Normal.Y", -0.5),
+            ("ObjectId.Id", 16_777_213.0),
+            ("ShadowCatcher.A", 0.0),
         ] {
             assert_eq!(value(&film, name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn shadows_on_catchers_are_opaque_by_the_light_they_take_away() {
+        let on_catcher = |catcher| Sample { object: 3, catcher, ..Sample::default() };
+        let hit = Sample { hit: true, object: 2, catcher: [9.0; 2], ..Sample::default() };
+        // Half of the samples on the catcher, which in sum is lit by a quarter of its light; one draws no light at all.
+        let shadow = [[0.25, 0.5], [0.25, 1.5], [0.0, 0.0], [0.0, 0.0]].map(on_catcher);
+        let pixels = [shadow[0], shadow[1], shadow[2], shadow[3], hit, hit, grey(1.0), grey(1.0)];
+        let film = film(&[&pixels]);
+        assert_eq!(value(&film, "ShadowCatcher.A"), 0.75);
+        assert_eq!(value(&film, "A"), 0.25 + 0.5 * 0.75);
+        assert_eq!((value(&film, "Transmittance"), value(&film, "ObjectId.Id")), (0.75, 3.0));
+        // Noise may find more light with shadows than without; a catcher in the dark has none to lose.
+        for catcher in [[2.0, 1.0], [0.0, 0.0]] {
+            let film = super::tests::film(&[&[on_catcher(catcher)]]);
+            assert_eq!((value(&film, "ShadowCatcher.A"), value(&film, "A")), (0.0, 0.0));
         }
     }
 

@@ -3,12 +3,13 @@
 //! One part with one flat list of channels (`R`, `StandardError.R`, `Depth.Z`, …; see [`named_channels`]), all
 //! 32-bit float and linear, with Rec.709 primaries if it is a picture in RGB, ZIP-compressed in scan lines: the plainest form that the format
 //! has, so that every program reads it. Attributes: `seed`, `samples` (such as `0..64`), `sceneHash`, `options`
-//! (text), `seconds` (double), `rejected` (text) and the standard `software`. Format: OpenEXR file layout, openexr.com.
+//! (text), `seconds` (double), `rejected` (text) and the standard `software`. A crop is a data window in the display window
+//! of the whole picture. Format: OpenEXR file layout, openexr.com.
 
 use std::io::{Cursor, Write};
 use std::path::Path;
 
-use exr::meta::attribute::{Chromaticities, LineOrder};
+use exr::meta::attribute::{Chromaticities, IntegerBounds, LineOrder};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
     LayerAttributes, Text, Vec2, WritableImage,
@@ -20,7 +21,7 @@ use crate::colours::{Colours, channels_of_bands, named_channels};
 use crate::error::FileError;
 use crate::estimates::Channel;
 use crate::film::Film;
-use crate::metadata::ImageMetadata;
+use crate::metadata::{Crop, ImageMetadata};
 
 /// Writes all layers of a film.
 pub fn write_exr(path: &Path, film: &Film, metadata: &ImageMetadata) -> Result<(), FileError> {
@@ -51,6 +52,10 @@ fn write_channels(
     };
     let layer = Layer::new(size, attributes(film, metadata), encoding, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);
+    if let Some((corner, full_size)) = metadata.crop.and_then(|crop| windows(crop, film)) {
+        image.layer_data.attributes.layer_position = corner;
+        image.attributes.display_window = IntegerBounds::new(Vec2(0, 0), full_size);
+    }
     image.attributes.chromaticities = (metadata.colours == Colours::Rgb).then_some(REC_709);
     let mut bytes = Cursor::new(Vec::new());
     image
@@ -61,6 +66,22 @@ fn write_channels(
     sort_attributes(&mut bytes);
     write_atomically(path, |file| file.write_all(&bytes))
 }
+
+/// Corner of the data window and size of the display window; `None` of a crop that is no part of its whole, as a damaged
+/// file may claim.
+fn windows(crop: Crop, film: &Film) -> Option<(Vec2<i32>, Vec2<usize>)> {
+    let along = |corner: u32, size: u32, full: u32| {
+        let fits = u64::from(corner) + u64::from(size) <= u64::from(full) && full <= GREATEST_WINDOW;
+        fits.then_some((i32::try_from(corner).ok()?, full as usize))
+    };
+    let [left, top] = crop.corner;
+    let (left, width) = along(left, film.width(), crop.full_size[0])?;
+    let (top, height) = along(top, film.height(), crop.full_size[1])?;
+    Some((Vec2(left, top), Vec2(width, height)))
+}
+
+/// Far above any picture, far below where the sums of readers overflow.
+const GREATEST_WINDOW: u32 = 1 << 24;
 
 /// Puts the attributes of the header in the order of their names. The `exr` crate keeps some in a hash map, in an
 /// order that differs from run to run, and equal pictures shall be equal files.
@@ -120,6 +141,7 @@ fn text(string: &str) -> Text {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::comparison::Picture;
     use crate::film::FilmTile;
     use crate::sample::{Layers, Sample};
     use exr::prelude::{ReadChannels, ReadLayers};
@@ -145,6 +167,7 @@ mod tests {
             version: "1.2.3".into(),
             options: "integrator=fast".into(),
             seed: u64::MAX,
+            crop: Some(Crop { corner: [30, 40], full_size: [640, 480] }),
             colours: Colours::Rgb,
             seconds: 1.5,
         };
@@ -178,5 +201,17 @@ mod tests {
         assert_eq!(attribute("samples"), Some(AttributeValue::Text(text("8..10"))));
         assert_eq!(attribute("sceneHash"), Some(AttributeValue::Text(text("abc"))));
         assert_eq!(attribute("seconds"), Some(AttributeValue::F64(1.5)));
+        assert_eq!(image.layer_data.attributes.layer_position, Vec2(30, 40));
+        assert_eq!(image.attributes.display_window, IntegerBounds::new(Vec2(0, 0), Vec2(640, 480)));
+        let picture = Picture::read(&path).unwrap();
+        assert_eq!((picture.width, picture.height), (20, 3));
+    }
+
+    #[test]
+    fn a_crop_that_is_no_part_of_its_whole_is_left_out() {
+        let film = Film::new(20, 3, Layers::NONE).unwrap();
+        let outside = |corner, full_size| windows(Crop { corner, full_size }, &film).is_none();
+        assert!(outside([30, 40], [49, 480]) && outside([u32::MAX; 2], [u32::MAX; 2]));
+        assert!(!outside([29, 477], [49, 480]));
     }
 }

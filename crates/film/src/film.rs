@@ -78,8 +78,9 @@ pub(crate) struct OpenPass {
 
 /// The sums of a picture.
 ///
-/// Memory per pixel: 128 bytes, and for each layer that is kept and has seen anything but zero 16 (depth), 24
-/// (albedo) or 48 (emission, single, multiple) more: 243 MB at 1280x720 with all layers but emission.
+/// Memory per pixel: 128 bytes, and for each layer that is kept and has seen anything but zero 4 (object), 16 (depth),
+/// 24 (albedo, normal) or 48 (emission, single, multiple, shadow catcher) more: 243 MB at 1280x720 for a cloud with all
+/// layers but emission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Film {
     pub(crate) width: u32,
@@ -311,9 +312,12 @@ mod tests {
         let mut colour = |exponent: i32| [next(), next(), next()].map(|u| u * 2f32.powi(exponent));
         let (single, multiple) = (colour(-20), colour(18));
         let albedo = colour(0);
+        let normal = colour(1).map(|x| x - 1.0);
+        let catcher = [single[0], multiple[0]];
         let radiance = [0, 1, 2].map(|c| single[c] + multiple[c]);
-        let hit = !index.is_multiple_of(3);
-        Sample { radiance, hit, depth: albedo[0] * 7.0, albedo, emission: [0.0; 3], single, multiple }
+        let (hit, object) = (!index.is_multiple_of(3), (albedo[1] * 5.0) as u32);
+        let depth = albedo[0] * 7.0;
+        Sample { radiance, hit, depth, albedo, normal, object, catcher, emission: [0.0; 3], single, multiple }
     }
 
     fn render(film: &mut Film, tiles: impl Iterator<Item = usize>, end: u64) {

@@ -4,6 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::colours::Colours;
 
+/// Where a picture lies in a larger one, pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Crop {
+    /// Its left column and top row there.
+    pub corner: [u32; 2],
+    /// Width and height of the larger one.
+    pub full_size: [u32; 2],
+}
+
 /// How the samples of a film were made; kept in `.acc` and `.exr` files and in the summary.
 ///
 /// Two films are estimates of the same picture, and can be merged, if all but `seconds` is equal.
@@ -20,6 +29,9 @@ pub struct ImageMetadata {
     /// What the channels are.
     #[serde(default)]
     pub colours: Colours,
+    /// Where the picture lies in a larger one, if it is a crop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crop: Option<Crop>,
     /// Time spent on rendering in seconds, summed over machines.
     pub seconds: f64,
 }

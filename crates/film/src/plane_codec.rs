@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::fixed_point::SquareSum;
-use crate::sums::PixelSums;
+use crate::sums::{CatcherSums, PixelSums};
 
 /// Records in a block.
 const BLOCK: usize = 1000;
@@ -66,6 +66,18 @@ fn word<const N: usize>(bytes: &[u8], index: usize) -> [u8; N] {
     std::array::from_fn(|i| bytes[index * N + i])
 }
 
+impl Record for u32 {
+    const BYTES: usize = 4;
+
+    fn put(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+
+    fn get(bytes: &[u8]) -> Self {
+        u32::from_le_bytes(word(bytes, 0))
+    }
+}
+
 impl Record for i128 {
     const BYTES: usize = 16;
 
@@ -102,6 +114,22 @@ impl Record for [i128; 3] {
     }
 }
 
+impl Record for CatcherSums {
+    const BYTES: usize = 40;
+
+    fn put(&self, bytes: &mut Vec<u8>) {
+        self.light.iter().for_each(|light| light.put(bytes));
+        bytes.extend(self.rays.to_le_bytes());
+    }
+
+    fn get(bytes: &[u8]) -> Self {
+        Self {
+            light: [0, 16].map(|at| Record::get(&bytes[at..at + 16])),
+            rays: u64::from_le_bytes(word(&bytes[32..], 0)),
+        }
+    }
+}
+
 impl Record for PixelSums {
     const BYTES: usize = 128;
 
@@ -135,6 +163,11 @@ mod tests {
         pixel.put(&mut bytes);
         assert_eq!(bytes.len(), PixelSums::BYTES);
         assert_eq!(PixelSums::get(&bytes), pixel);
+        let catcher = CatcherSums { light: [i128::MAX, -2], rays: u64::MAX };
+        let mut bytes = Vec::new();
+        catcher.put(&mut bytes);
+        assert_eq!(bytes.len(), CatcherSums::BYTES);
+        assert_eq!(CatcherSums::get(&bytes), catcher);
     }
 
     #[test]

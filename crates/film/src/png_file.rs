@@ -2,7 +2,8 @@
 //!
 //! Exposure in stops (a factor of 2^exposure), [`tone_map`](crate::tone_map()), sRGB curve, and a dither of one
 //! step, uniform and the same in every run, so that a clear sky does not fall into bands: floor(255 v + u) has
-//! the mean 255 v. Black and white stay exact.
+//! the mean 255 v. Black and white stay exact. The picture is opaque: alpha, with the shadows on catchers, is for
+//! compositors and only in EXR files.
 
 use std::path::Path;
 

@@ -26,6 +26,14 @@ pub fn radiance(wavelength_nm: f64, kelvin: f64) -> f64 {
     per_metre * 1e-9
 }
 
+/// b of Wien's law λ T = b for the wavelength at which [`radiance`] is greatest, m K (CODATA 2018).
+const WIEN: f64 = 2.897_771_955e-3;
+
+/// The greatest spectral radiance of a black body over all wavelengths, W/(m² sr nm); it grows as T⁵.
+pub fn greatest_radiance(kelvin: f64) -> f64 {
+    radiance(WIEN / kelvin * 1e9, kelvin)
+}
+
 /// Luminance Y of a black body in the unit of [`cie::xyz`]; times [`cie::LUMINANCE_OF_Y`] it is in cd/m².
 pub fn luminance(kelvin: f64) -> f64 {
     cie::xyz(|nm| radiance(nm, kelvin)).y
@@ -89,6 +97,17 @@ mod tests {
         let total: f64 = (100..100_000).map(|nm| radiance(f64::from(nm), 2000.0)).sum();
         let expected = 5.670_374_419e-8 * 2000.0_f64.powi(4) / std::f64::consts::PI;
         assert!((total / expected - 1.0).abs() < 1e-4, "{total} {expected}");
+    }
+
+    #[test]
+    fn the_greatest_radiance_is_that_of_the_best_wavelength() {
+        for kelvin in [300.0, 1500.0, 6500.0] {
+            let best = (1..300_000).map(|step| radiance(0.1 * f64::from(step), kelvin)).fold(0.0, f64::max);
+            assert!((greatest_radiance(kelvin) / best - 1.0).abs() < 1e-6, "{kelvin}");
+        }
+        let ratio = greatest_radiance(4000.0) / greatest_radiance(2000.0);
+        assert!((ratio / 32.0 - 1.0).abs() < 1e-12, "{ratio}");
+        assert_eq!(greatest_radiance(0.0), 0.0);
     }
 
     #[test]

@@ -36,6 +36,7 @@ pub(crate) fn build_fields(
             scale: temperature.scale,
             offset: temperature.offset,
             radiance_scale: description.emission_scale.unwrap_or(1.0),
+            normalised: temperature.normalised,
             colours: Arc::new(BlackbodyColours::new()),
         });
     }

@@ -203,12 +203,15 @@ impl Volume {
             fields.temperature.as_ref().map(|temperature| (temperature, temperature.kelvin(position)));
         let (factor, glow) = match channels {
             Channels::Rgb => {
-                let glow = kelvin.map(|(field, kelvin)| field.colours.at(kelvin) * field.radiance_scale);
+                let glow =
+                    kelvin.map(|(field, kelvin)| field.colours.at(kelvin) * field.radiance_factor(kelvin));
                 (factor.extend(0.0), glow.unwrap_or_default().extend(0.0))
             }
             Channels::Wavelengths(wavelengths_nm) => {
                 let glow = |nm| {
-                    kelvin.map_or(0.0, |(field, kelvin)| planck::radiance(nm, kelvin) * field.radiance_scale)
+                    kelvin.map_or(0.0, |(field, kelvin)| {
+                        planck::radiance(nm, kelvin) * field.radiance_factor(kelvin)
+                    })
                 };
                 let factor = Spectrum::Rgb(factor);
                 (

@@ -5,7 +5,7 @@
 
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
-use tyndall_optics::planck::BlackbodyColours;
+use tyndall_optics::planck::{self, BlackbodyColours};
 use tyndall_volumes::BrickGrid;
 
 use crate::medium::box_interval;
@@ -29,8 +29,10 @@ pub struct TemperatureField {
     pub scale: f64,
     /// Kelvin where they are 0.
     pub offset: f64,
-    /// Factor on Planck's radiance, W/(m² sr nm).
+    /// Factor on Planck's radiance, W/(m² sr nm), or on the normalised one.
     pub radiance_scale: f64,
+    /// Whether every black body's spectrum is scaled to 1 where it is greatest.
+    pub normalised: bool,
     /// Colours of black bodies in RGB.
     pub colours: Arc<BlackbodyColours>,
 }
@@ -80,6 +82,16 @@ impl TemperatureField {
     pub fn kelvin(&self, position: DVec3) -> f64 {
         self.scale * self.field.value(position) + self.offset
     }
+
+    /// What Planck's radiance at a temperature is multiplied by. Normalised bodies of 100 K and below are black, so that
+    /// what is cold does not glow at all.
+    pub fn radiance_factor(&self, kelvin: f64) -> f64 {
+        match self.normalised {
+            false => self.radiance_scale,
+            true if kelvin > 100.0 => self.radiance_scale / planck::greatest_radiance(kelvin),
+            true => 0.0,
+        }
+    }
 }
 
 impl Volume {
@@ -96,7 +108,8 @@ impl Volume {
             return DVec3::ZERO;
         }
         let glow = fields.temperature.as_ref().map_or(DVec3::ZERO, |temperature| {
-            temperature.colours.at(temperature.kelvin(position)) * temperature.radiance_scale
+            let kelvin = temperature.kelvin(position);
+            temperature.colours.at(kelvin) * temperature.radiance_factor(kelvin)
         });
         (self.medium.emission + glow) * factor
     }
@@ -120,5 +133,63 @@ impl Volume {
         self.medium.emission != DVec3::ZERO
             || self.medium.emission_per_length != DVec3::ZERO
             || self.fields.as_ref().is_some_and(|fields| fields.temperature.is_some())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DMat3;
+    use tyndall_optics::cie;
+    use tyndall_volumes::{GridClass, GridValues, Storage, Tile, Tree};
+
+    fn temperatures(kelvin: f32, normalised: bool) -> TemperatureField {
+        let tile = Tile { origin: [0; 3], log2_edge: 3, value: kelvin, active: true };
+        let grid = tyndall_volumes::Grid {
+            name: "temperature".to_owned(),
+            class: GridClass::Unknown,
+            index_to_world: DAffine3::IDENTITY,
+            saved_as_half: false,
+            codec: String::new(),
+            metadata: Vec::new(),
+            values: GridValues::Float(Tree {
+                background: 0.0,
+                tiles: vec![tile],
+                leaves: Vec::new(),
+                leaf_values: Vec::new(),
+            }),
+        };
+        let grid = Arc::new(BrickGrid::new(&grid, Storage::F32).expect("the grid is small"));
+        let world_to_local = DAffine3::from_mat3(DMat3::IDENTITY);
+        TemperatureField {
+            field: Field { world_to_local, grid },
+            scale: 1.0,
+            offset: 0.0,
+            radiance_scale: 3.0,
+            normalised,
+            colours: Arc::new(BlackbodyColours::new()),
+        }
+    }
+
+    #[test]
+    fn a_normalised_black_body_has_the_scale_for_its_greatest_radiance() {
+        let field = temperatures(2500.0, true);
+        let kelvin = field.kelvin(DVec3::splat(3.5));
+        assert_eq!(kelvin, 2500.0);
+        let best = (100..5000).map(|nm| planck::radiance(f64::from(nm), kelvin)).fold(0.0, f64::max);
+        assert!((best * field.radiance_factor(kelvin) / 3.0 - 1.0).abs() < 1e-5);
+        assert_eq!(temperatures(2500.0, false).radiance_factor(kelvin), 3.0);
+        // Its colour is that of the body, its luminance that of a spectrum whose peak is the scale.
+        let colour = field.colours.at(kelvin) * field.radiance_factor(kelvin);
+        let expected = 3.0 * cie::xyz(|nm| planck::radiance(nm, kelvin) / best).y;
+        assert!((cie::luminance(colour) / expected - 1.0).abs() < 1e-4, "{colour} {expected}");
+    }
+
+    #[test]
+    fn what_is_cold_does_not_glow() {
+        let field = temperatures(90.0, true);
+        for kelvin in [90.0, 0.0, -10.0, f64::NAN] {
+            assert_eq!(field.radiance_factor(kelvin), 0.0);
+        }
     }
 }

@@ -1,15 +1,14 @@
 //! What a picture was made of, as a number: accumulations of different scenes must not be merged.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
 use crate::canonical_names::without_names;
-use crate::description::{
-    LightDescription, MaterialChoice, PhaseDescription, RenderDescription, SceneDescription,
-};
+use crate::description::{RenderDescription, SceneDescription};
 use crate::error::SceneError;
 
 /// The first 128 bits of a SHA-256 over everything that determines the expected picture.
@@ -25,9 +24,9 @@ impl fmt::Display for SceneHash {
 /// Hash of a scene whose file names are relative to `folder`.
 ///
 /// It covers the camera, the resolution, `max_depth`, what colours are computed with and written as, media, volumes,
-/// shapes, materials, lights and the bytes of the files they name. It leaves out what does not change the expected picture: where the files
-/// are, names, the unit (unless media are given in physical units), comments, samples per pixel, seed, integrator,
-/// exposure, layers and meters.
+/// shapes, materials, lights and the bytes of the files they name. It leaves out what does not change the expected
+/// picture: where the files are, names, the unit (unless media are given in physical units), comments, samples per pixel,
+/// seed, integrator, exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     // Only what is given in physical units depends on it.
@@ -40,39 +39,17 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     without_names(&mut canonical);
     let RenderDescription { max_depth, mode, .. } = description.render;
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
-    let media =
-        canonical.medium.iter_mut().chain(canonical.volumes.iter_mut().map(|volume| &mut volume.medium));
-    for medium in media {
-        let of_phase = medium.phase.as_mut().and_then(PhaseDescription::file_mut);
-        let of_particles = medium.particles.as_mut().and_then(|particles| particles.material_file.as_mut());
-        for file in of_phase.into_iter().chain(of_particles) {
-            *file = content_hash(&folder.join(&file))?;
-        }
-    }
-    for volume in &mut canonical.volumes {
-        let of_fields = [
-            volume.emission_grid.as_mut().map(|grid| &mut grid.file),
-            volume.temperature.as_mut().map(|grid| &mut grid.file),
-            volume.albedo_grid.as_mut().map(|grid| &mut grid.file),
-        ];
-        for file in of_fields.into_iter().flatten().chain([&mut volume.file]).flatten() {
-            *file = content_hash(&folder.join(&file))?;
-        }
-    }
-    for mesh in canonical.shapes.iter_mut().filter_map(|shape| shape.mesh.as_mut()) {
-        if let Some(file) = &mut mesh.file {
-            *file = content_hash(&folder.join(&file))?;
-        }
-    }
-    let in_shapes = canonical.shapes.iter_mut().filter_map(|shape| shape.material.as_mut());
-    let of_materials = canonical.materials.iter_mut().flat_map(|named| named.material.pictures_mut());
-    for picture in of_materials.chain(in_shapes.flat_map(MaterialChoice::pictures_mut)) {
-        *picture = content_hash(&folder.join(&picture))?;
-    }
-    for light in &mut canonical.lights {
-        if let LightDescription::Image(image) = light {
-            image.file = content_hash(&folder.join(&image.file))?;
-        }
+    let mut known: HashMap<PathBuf, String> = HashMap::new();
+    for file in canonical.files_mut() {
+        let path = folder.join(&file);
+        *file = match known.get(&path) {
+            Some(hash) => hash.clone(),
+            None => {
+                let hash = content_hash(&path)?;
+                known.insert(path, hash.clone());
+                hash
+            }
+        };
     }
     Ok(SceneHash(first_half(Sha256::digest(canonical.to_toml().as_bytes()).into())))
 }
@@ -92,4 +69,58 @@ fn content_hash(path: &Path) -> Result<String, SceneError> {
 
 fn first_half(digest: [u8; 32]) -> [u8; 16] {
     std::array::from_fn(|index| digest[index])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneDocument;
+
+    const SCENE: &str = r#"
+        camera = { position = [0, 0, 5], target = [0, 0, 0] }
+        [[volume]]
+        name = "milk"
+        sphere = { center = [0, 0, 0], radius = 1 }
+        mu_t = 1
+        albedo = 1
+        [[volume]]
+        name = "water"
+        sphere = { center = [0, 0, 0], radius = 1 }
+        mu_t = 2
+        albedo = 0
+        [[shape]]
+        name = "glass"
+        mesh = { file = "a.ply" }
+        interior = "milk"
+        [shape.material]
+        type = "mix"
+        amount = 0.5
+        materials = [
+            { type = "diffuse", reflectance = { image = "a.png" } },
+            { type = "plastic", reflection_tint = { image = "b.png" } },
+        ]
+    "#;
+
+    #[test]
+    fn files_of_shapes_count_by_their_content_and_volumes_by_the_shapes_around_them() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, content) in
+            [("a.ply", "1"), ("same.ply", "1"), ("other.ply", "2"), ("a.png", "3"), ("b.png", "4")]
+        {
+            std::fs::write(folder.path().join(name), content).unwrap();
+        }
+        let hash = |from: &str, to: &str| {
+            let description = SceneDocument::parse("test", &SCENE.replace(from, to)).unwrap().description();
+            scene_hash(&description.unwrap(), folder.path()).unwrap()
+        };
+        let plain = hash("", "");
+        assert_eq!(hash("a.ply", "same.ply"), plain);
+        assert_eq!(hash("glass", "goblet"), plain);
+        for (from, to) in
+            [("a.ply", "other.ply"), ("a.png", "b.png"), ("b.png", "a.png"), ("interior = \"milk\"", "")]
+        {
+            assert_ne!(hash(from, to), plain, "{from} {to}");
+        }
+        assert_ne!(hash("interior = \"milk\"", "interior = \"water\""), plain);
+    }
 }

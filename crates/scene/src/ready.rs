@@ -22,7 +22,8 @@ pub struct Scene {
     /// light is the spectrum times the luminance of what it shines in RGB. Lights beyond its end have none.
     pub light_spectra: Vec<Option<Spectrum>>,
     /// Probability that next-event estimation draws each light. It is 0 for lights that continued paths find as
-    /// well by themselves, and sums to 1 unless it is 0 for all. Of lights in the tree only their sum matters.
+    /// well by themselves, and sums to 1 unless it is 0 for all. Of lights in the tree only their sum matters. Change them by
+    /// [`Scene::set_light_probabilities`].
     pub light_probabilities: Vec<f64>,
     /// Chooses by place among lights that are somewhere, if these are many. Lights at infinity have their share whatever
     /// the place: the light that enters the scene from there, compared to the power of those inside.

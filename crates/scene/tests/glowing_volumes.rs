@@ -69,6 +69,7 @@ fn cases() -> Vec<(&'static str, Volume)> {
             scale: 1500.0,
             offset: 400.0,
             radiance_scale: 1.0,
+            normalised: false,
             colours: Arc::new(BlackbodyColours::new()),
         }),
         ..Default::default()

@@ -4,13 +4,14 @@
 //! The integrals over a lamp's surface are fine sums over the square that its points are mapped from.
 
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 use glam::DVec3;
 use tyndall_lanes::Random;
-use tyndall_scene::Light;
 use tyndall_scene::description::SpotFalloff;
 use tyndall_scene::light::{AreaLight, SpotLight, uv_to_direction};
 use tyndall_scene::surface::WorldPrimitive;
+use tyndall_scene::{Light, Ray, SceneDocument, build};
 
 #[test]
 fn the_power_of_a_spot_light_is_the_integral_of_its_intensity() {
@@ -107,7 +108,7 @@ fn cases() -> Vec<Case> {
 
 /// Calls `visit` with the direction, position, normal and the solid angle of each element of the surface.
 fn elements(case: &Case, mut visit: impl FnMut(DVec3, DVec3, DVec3, f64)) {
-    let n = 1000;
+    let n = 800;
     for primitive in &case.lamp {
         let area = primitive.area() / f64::from(n * n);
         for k in 0..n * n {
@@ -249,4 +250,81 @@ fn a_lamp_is_dark_from_behind_and_one_without_area_is_never_drawn() {
         assert_eq!(light.sample(DVec3::Z, [0.3, 0.4]).radiance_over_pdf, DVec3::ZERO);
         assert_eq!(light.selection_weight(1.0), 0.0);
     }
+}
+
+#[test]
+fn shapes_that_shine_become_lamps_each_instance_its_own() {
+    let text = r#"
+        camera = { position = [0, 0, 9], target = [0, 0, 0] }
+        [[material]]
+        name = "white"
+        type = "diffuse"
+        reflectance = 0.5
+        [[shape]]
+        box = { min = [5, 5, 5], max = [6, 6, 6] }
+        material = "white"
+        [[shape]]
+        name = "bulb"
+        sphere = { center = [0, 0, 0], radius = 0.5 }
+        material = "white"
+        emission = { radiance = { blackbody = 3000, luminance = 2 }, scale = 3 }
+        instances = [{ scale = 2 }, { translate = [4, 0, 0] }, { scale = [1, 2, 1], translate = [-4, 0, 0] }]
+        [[shape]]
+        rectangle = { corner = [-1, 3, -1], u = [2, 0, 0], v = [0, 0, 2] }
+        transform = { scale = [-1, 1, 1] }
+        material = "white"
+        emission = { radiance = [1, 2, 3], two_sided = true }
+        [[light]]
+        type = "spot"
+        position = [0, 1, 0]
+        direction = [0, -2, 0]
+        intensity = 4
+        angle = 60
+        inner_angle = 60
+    "#;
+    let description = SceneDocument::parse("lamps.toml", text).unwrap().description().unwrap();
+    let built = build(&description, Path::new(".")).unwrap();
+    let scene = &built.scene;
+    let numbers: Vec<Option<usize>> = scene.surfaces.shapes.iter().map(|shape| shape.light).collect();
+    assert_eq!(numbers, [None, Some(1), Some(2), Some(3), Some(4)]);
+    let areas: Vec<f64> = scene.lights.iter().filter_map(lamp_of).map(AreaLight::area).collect();
+    for (area, expected) in areas.iter().zip([4.0 * PI, PI, 0.0, 4.0]) {
+        assert!((area - expected).abs() < 1e-12, "{areas:?}");
+    }
+    let about: Vec<&String> = built.notes.iter().filter(|note| note.contains("by chance")).collect();
+    assert!(matches!(about[..], [note] if note.starts_with("bulb.instances.2: ")), "{:?}", built.notes);
+    assert!(scene.light_spectra[1].is_some() && scene.light_spectra[4].is_none());
+    let Light::Area(bulb) = &scene.lights[1] else { panic!("{:?}", scene.lights[1]) };
+    let radiance = bulb.radiance_from(DVec3::Y, DVec3::NEG_Y);
+    let luminance = radiance.dot(DVec3::new(0.2126, 0.7152, 0.0722));
+    assert!((luminance / 6.0 - 1.0).abs() < 1e-3, "{radiance}");
+    assert_eq!(bulb.radiance_from(DVec3::Y, DVec3::Y), DVec3::ZERO);
+    // Spot: 2π (1 − cos 60°) 4.
+    assert!((scene.lights[0].selection_weight(1.0) / (4.0 * PI) - 1.0).abs() < 1e-12);
+    assert_eq!(scene.light_probability(3, DVec3::ZERO), 0.0);
+
+    // A ray that meets a lamp finds it where sampling drew it, and as dense.
+    let mut random = Random::new(3, 0, 0);
+    for (number, shape) in [(1, 1), (2, 2), (4, 4)] {
+        for _ in 0..1000 {
+            let from = DVec3::new(2.0 + random.f64(), random.f64(), 5.0 * random.f64());
+            let light = &scene.lights[number];
+            let sample = light.sample(from, [random.f64(), random.f64()]);
+            let ray = Ray { origin: from, direction: sample.toward };
+            let free = scene.surfaces.intersect(&ray, sample.distance);
+            assert!(free.is_none_or(|hit| hit.shape != shape), "lamp {number} shadows itself: {free:?}");
+            let Some(hit) = scene.surfaces.intersect(&ray, sample.distance * (1.0 + 1e-6)) else { continue };
+            let lamp = lamp_of(light).unwrap();
+            if hit.shape == shape && hit.normal.dot(sample.toward).abs() > 0.01 {
+                let pdf = lamp.pdf_of_hit(from, sample.toward, hit.position, hit.normal);
+                assert!((pdf / sample.pdf - 1.0).abs() < 1e-6, "lamp {number}: {pdf} {sample:?}");
+                let brought = lamp.radiance_from(hit.normal, sample.toward) / pdf;
+                assert!((brought - sample.radiance_over_pdf).length() < 1e-6 * brought.length());
+            }
+        }
+    }
+}
+
+fn lamp_of(light: &Light) -> Option<&AreaLight> {
+    if let Light::Area(lamp) = light { Some(lamp) } else { None }
 }

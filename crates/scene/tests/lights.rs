@@ -2,10 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
-use tyndall_scene::description::ImageFilter;
+use glam::{DMat3, DVec3};
+use tyndall_scene::description::{ImageFilter, ImageMapping};
 use tyndall_scene::light::{
-    ConstantLight, DistantLight, ImageLight, Light, LightImage, PointLight, SunLight, uv_to_direction,
+    ConstantLight, DistantLight, ImageLight, Light, LightImage, PointLight, SunLight,
+    direction_to_equal_area, equal_area_to_direction, uv_to_direction,
 };
 
 /// PCG32 (O'Neill 2014) with a fixed seed.
@@ -38,7 +39,7 @@ struct Chart {
 
 /// The whole sphere, equirectangular, turned by `rotation` degrees as image lights are.
 fn sphere(bins: [usize; 2], rotation: f64) -> Chart {
-    let turn = glam::DMat3::from_rotation_y(rotation.to_radians());
+    let turn = DMat3::from_rotation_y(rotation.to_radians());
     Chart {
         direction: Box::new(move |s, t| (turn * uv_to_direction(s, t), 2.0 * PI * PI * (PI * t).sin())),
         place: Box::new(move |direction| {
@@ -46,6 +47,18 @@ fn sphere(bins: [usize; 2], rotation: f64) -> Chart {
                 tyndall_scene::light::direction_to_uv(turn.transpose() * direction)
                     .map(|at| at.min(1.0 - 1e-12)),
             )
+        }),
+        bins,
+    }
+}
+
+/// The whole sphere, as pictures of equal areas have it.
+fn square(bins: [usize; 2], orientation: DMat3) -> Chart {
+    Chart {
+        direction: Box::new(move |s, t| (orientation * equal_area_to_direction(s, t), 4.0 * PI)),
+        place: Box::new(move |direction| {
+            let place = direction_to_equal_area(orientation.transpose() * direction);
+            Some(place.map(|at| at.min(1.0 - 1e-12)))
         }),
         bins,
     }
@@ -217,6 +230,47 @@ fn image_lights_are_sampled_as_their_pdf_says() {
         let image = LightImage::new(width, height, texels).unwrap();
         let light = Light::Image(ImageLight::new(image, ImageFilter::Bilinear, 1.0, 0.0));
         check_sampler(&format!("{width} x {height}"), &light, &sphere([width * 4, height * 4], 0.0));
+    }
+}
+
+#[test]
+fn pictures_of_equal_areas_are_sampled_as_their_pdf_says() {
+    let mirror = DMat3::from_rotation_x(0.7) * DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+    for (filter, orientation) in [
+        (ImageFilter::Nearest, mirror),
+        (ImageFilter::Bilinear, mirror),
+        (ImageFilter::Bilinear, DMat3::IDENTITY),
+    ] {
+        let name = format!("{filter:?} in {orientation}");
+        let mapping = ImageMapping::EqualArea;
+        let light = Light::Image(ImageLight::mapped(test_image(16, 16), mapping, filter, 2.0, orientation));
+        check_sampler(&name, &light, &square([16, 16], orientation));
+        check_unbiased(&name, &light, &square([16, 16], orientation), 2e-5);
+    }
+    let image = LightImage::new(1, 1, vec![[2.0; 3]]).unwrap();
+    let mapping = ImageMapping::EqualArea;
+    let light = Light::Image(ImageLight::mapped(image, mapping, ImageFilter::Bilinear, 1.0, mirror));
+    check_sampler("1 x 1", &light, &square([8, 8], mirror));
+    assert!((light.selection_weight(1.0) / (8.0 * PI * PI) - 1.0).abs() < 1e-12);
+}
+
+/// Across the edges of the square the filter goes on where the sphere does: radiance has no seams.
+#[test]
+fn pictures_of_equal_areas_have_no_seams() {
+    let n = 32;
+    // A smooth function of the direction, as the picture shows it.
+    let shape = |direction: DVec3| 2.0 + direction.dot(DVec3::new(0.6, -0.5, 0.4));
+    let place = |k: usize| (k as f64 + 0.5) / n as f64;
+    let texel = |k: usize| [shape(equal_area_to_direction(place(k % n), place(k / n))) as f32; 3];
+    let image = LightImage::new(n, n, (0..n * n).map(texel).collect()).unwrap();
+    let (mapping, filter) = (ImageMapping::EqualArea, ImageFilter::Bilinear);
+    let light = Light::Image(ImageLight::mapped(image, mapping, filter, 1.0, DMat3::IDENTITY));
+    let mut random = Random(21);
+    for _ in 0..20_000 {
+        let [u, v] = random.pair();
+        let direction = uv_to_direction(u, v);
+        let difference = light.radiance(direction).x - shape(direction);
+        assert!(difference.abs() < 0.05, "{direction}: {difference}");
     }
 }
 

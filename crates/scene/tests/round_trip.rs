@@ -234,6 +234,90 @@ fn volume() -> impl Strategy<Value = VolumeDescription> {
         .prop_map(|(volume, name, transform, medium)| VolumeDescription { name, transform, medium, ..volume })
 }
 
+fn shape() -> impl Strategy<Value = ShapeDescription> {
+    let none = ShapeDescription::default;
+    let triangle = MeshShape {
+        vertices: Some(vec![[0.0, 0.0, 0.0], [1.0, 0.5, 0.0], [0.0, 1e-3, 7.0]]),
+        triangles: Some(vec![[0, 1, 2], [2, 1, 0]]),
+        normals: Some(vec![[0.0, 0.0, 1.0]; 3]),
+        uvs: Some(vec![[0.0, 0.25]; 3]),
+        ..Default::default()
+    };
+    let geometry = prop_oneof![
+        (words(), any::<bool>()).prop_map(move |(file, flat)| {
+            let mesh = MeshShape { file: Some(file), flat, ..Default::default() };
+            ShapeDescription { mesh: Some(mesh), ..none() }
+        }),
+        Just(ShapeDescription { mesh: Some(triangle), ..none() }),
+        (vector(), positive()).prop_map(move |(center, radius)| ShapeDescription {
+            sphere: Some(SphereShape { center, radius }),
+            ..none()
+        }),
+        positive().prop_map(move |size| ShapeDescription {
+            cuboid: Some(BoxShape { min: [-size, -1.0, 0.0], max: [size, 1.0, size] }),
+            ..none()
+        }),
+        (vector(), positive()).prop_map(move |(corner, u)| ShapeDescription {
+            rectangle: Some(RectangleShape { corner, u: [u, 0.0, 0.0], v: [0.0, -0.5, 3.0] }),
+            ..none()
+        }),
+        (vector(), direction(), within(0.5, 9.0), within(0.0, 0.4)).prop_map(
+            move |(center, normal, radius, inner_radius)| ShapeDescription {
+                disc: Some(DiscShape { center, normal, radius, inner_radius }),
+                ..none()
+            }
+        ),
+        (direction(), positive(), any::<bool>()).prop_map(move |(to, radius, capped)| ShapeDescription {
+            cylinder: Some(CylinderShape { from: [0.0; 3], to, radius, capped }),
+            ..none()
+        }),
+        (vector(), direction()).prop_map(move |(point, normal)| ShapeDescription {
+            plane: Some(PlaneShape { point, normal }),
+            ..none()
+        }),
+    ];
+    let emission = (light_colours(), within(0.0, 9.0), any::<bool>())
+        .prop_map(|(radiance, scale, two_sided)| SurfaceEmission { radiance, scale, two_sided });
+    let grey = MaterialDescription::Diffuse { reflectance: 0.25.into() };
+    let keys = (of(words()), of(1_u32..=16_777_215), any::<bool>(), any::<bool>());
+    let instances = of(proptest::collection::vec(transform(), 0..3));
+    (geometry, of(transform()), instances, of(emission), keys).prop_map(
+        move |(shape, transform, instances, emission, (name, id, flip, shadow_catcher))| ShapeDescription {
+            name,
+            transform,
+            instances,
+            material: Some(MaterialChoice::Here(Box::new(grey.clone()))),
+            emission,
+            interior: flip.then(|| Names::Several(vec!["inside".into(), "medium".into()])),
+            exterior: shadow_catcher.then(|| Names::One("inside".into())),
+            flip,
+            shadow_catcher,
+            id,
+            ..shape
+        },
+    )
+}
+
+/// Shapes, the volume that they bound, and the medium in which they are.
+fn bounded(
+    shapes: Vec<ShapeDescription>,
+    volumes: &mut Vec<VolumeDescription>,
+    medium: &mut Option<MediumDescription>,
+) -> Vec<ShapeDescription> {
+    let filling = MediumDescription { preset: Some("coke".into()), ..Default::default() };
+    let is_shape = |shape: &ShapeDescription| shape.interior.is_some();
+    if shapes.iter().any(is_shape) {
+        medium.get_or_insert(filling.clone());
+        volumes.push(VolumeDescription {
+            name: Some("inside".into()),
+            medium: filling,
+            ..Default::default()
+        });
+        return shapes;
+    }
+    shapes.into_iter().map(|shape| ShapeDescription { exterior: None, ..shape }).collect()
+}
+
 fn light() -> impl Strategy<Value = LightDescription> {
     let sky = (of(within(-6.0, 90.0)), of(number()), within(1.0, 20.0), rgb(0.0, 1.0), any::<bool>())
         .prop_map(|(sun_elevation, sun_azimuth, turbidity, ground_albedo, sun)| SkyDescription {
@@ -322,25 +406,27 @@ fn scene() -> impl Strategy<Value = SceneDescription> {
         camera(),
         film_and_render(),
         of(medium().prop_map(|medium| MediumDescription { emission_per_length: None, ..medium })),
-        proptest::collection::vec(volume(), 0..3),
+        (proptest::collection::vec(volume(), 0..3), proptest::collection::vec(shape(), 0..3)),
         proptest::collection::vec(light(), 0..3),
         proptest::collection::vec(meter(), 0..3),
         named_materials(),
     )
-        .prop_map(|(unit, camera, (film, render), medium, volumes, lights, meters, materials)| {
-            SceneDescription {
-                materials,
-                shapes: Vec::new(),
-                unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
-                camera,
-                film,
-                render,
-                medium,
-                volumes,
-                lights,
-                meters,
-            }
-        })
+        .prop_map(
+            |(unit, camera, (film, render), mut medium, (mut volumes, shapes), lights, meters, materials)| {
+                SceneDescription {
+                    shapes: bounded(shapes, &mut volumes, &mut medium),
+                    materials,
+                    unit: if unit.len() % 2 == 0 { "mm".to_owned() } else { "km".to_owned() },
+                    camera,
+                    film,
+                    render,
+                    medium,
+                    volumes,
+                    lights,
+                    meters,
+                }
+            },
+        )
 }
 
 fn read(text: &str) -> SceneDescription {

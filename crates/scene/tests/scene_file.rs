@@ -213,7 +213,7 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         ),
         (
             "[[volume]]\nmu_t = 1\nalbedo = 1".to_owned(),
-            "scene.toml:4:1: the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`",
+            "scene.toml:4:1: the volume has no shape: give one of `file`, `box`, `sphere`, `slab`, `atmosphere`, `procedural`, or a [[shape]] with its `name` for `interior`",
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 1\nslab = {{ bottom = 0, top = 1 }}"),
@@ -234,7 +234,21 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         (
             "[[light]]\ntype = 'stars'".to_owned(),
             "scene.toml:5:8: unknown type `stars` of [[light]]; there is `constant`, `image`, `sky`, `sun`, \
-             `distant`, `point`",
+             `distant`, `point`, `spot`",
+        ),
+        (
+            "[[light]]\ntype = 'spot'\nposition = [0, 1, 0]\ndirection = [0, 0, 0]\nintensity = 1\nangle = 30".to_owned(),
+            "scene.toml:7:1: `direction` is a direction and must not be [0, 0, 0]",
+        ),
+        (
+            "[[light]]\ntype = 'spot'\nposition = [0, 1, 0]\ndirection = [0, -1, 0]\nintensity = 1\nangle = 30\n\
+             inner_angle = 31".to_owned(),
+            "scene.toml:10:1: `inner_angle` must not be greater than `angle`, the edge of the cone",
+        ),
+        (
+            "[[light]]\ntype = 'image'\nfile = 'sky.exr'\norientation = [2, 0, 0, 0, 1, 0, 0, 0, 1]".to_owned(),
+            "scene.toml:7:1: `orientation` must be a rotation, mirrored or not: three rows of length 1 at right angles to \
+             each other",
         ),
         (
             "[light]\ntype = 'sky'".to_owned(),
@@ -325,9 +339,9 @@ fn columns_count_characters() {
         ),
         [
             "scene.toml:2:54: unknown key `µ` in [camera]; there is `aperture_radius`, `direction`, \
-             `focus_distance`, `up`, `vertical_fov`",
+             `focus_distance`, `height`, `inside`, `projection`, `up`, `vertical_fov`, `window`",
             "scene.toml:2:63: unknown key `roll` in [camera]; there is `aperture_radius`, `direction`, \
-             `focus_distance`, `up`, `vertical_fov`",
+             `focus_distance`, `height`, `inside`, `projection`, `up`, `vertical_fov`, `window`",
         ]
     );
 }

@@ -52,6 +52,9 @@ impl<C: Copy + Add<Output = C> + AddAssign> PathLayers<C> {
             emission: colour(self.emission),
             single: colour(self.single),
             multiple: colour(self.multiple),
+            normal: first.normal.as_vec3().to_array(),
+            object: first.object,
+            ..Sample::default()
         }
     }
 }

@@ -9,8 +9,8 @@ use std::time::Instant;
 use miette::IntoDiagnostic;
 use serde::Serialize;
 use tyndall_film::{Film, LUMINANCE, Layers};
-use tyndall_scene::description::{CameraDescription, Integrator};
-use tyndall_scene::{Camera, Scene};
+use tyndall_scene::description::Integrator;
+use tyndall_scene::{Camera, Scene, SceneDescription};
 use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
 
 use super::comparison::Refused;
@@ -59,17 +59,18 @@ pub struct Pictures {
     pub refused: Vec<Refused>,
 }
 
-/// Renders the scene by each choice; `tell` hears of each before.
+/// Renders the whole view of the scene, whatever its crop, by each choice; `tell` hears of each before.
 pub fn render_all(
     scene: &Scene,
-    camera: &CameraDescription,
+    description: &SceneDescription,
     options: PictureOptions,
     mut tell: impl FnMut(&str),
 ) -> miette::Result<Pictures> {
-    let [width, height] = scene.resolution;
+    let [width, height] = description.film.resolution;
     let rows = (f64::from(options.width) * f64::from(height) / f64::from(width)).round();
     let resolution = [options.width, (rows as u32).clamp(1, 4 * options.width)];
-    let small = Scene { camera: Camera::new(camera, resolution, None), resolution, ..scene.clone() };
+    let camera = Camera::new(&description.camera, resolution, None);
+    let small = Scene { camera, resolution, ..scene.clone() };
     let (mut choices, mut refused) = (vec![(None, Estimators::default())], Vec::new());
     for estimator in Estimator::all() {
         let (name, kind) = (estimator.properties().name, estimator.kind());
@@ -106,8 +107,7 @@ fn render(
     number: u64,
 ) -> miette::Result<(Film, f64)> {
     let [width, height] = scene.resolution;
-    let layers = Layers { depth: false, albedo: false, emission: false, single: false, multiple: false };
-    let mut film = Film::new(width, height, layers).into_diagnostic()?;
+    let mut film = Film::new(width, height, Layers::NONE).into_diagnostic()?;
     film.open_range(0).into_diagnostic()?;
     let render_options = RenderOptions {
         integrator: Integrator::Reference,

@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde::Serialize;
 use tyndall_scene::{Density, Ray, SceneDescription, Volume, build, scene_hash};
 
+use super::contents::Contents;
 use super::table::{bytes, number, triple};
 use crate::render::input::Input;
 
@@ -17,6 +18,8 @@ pub struct SceneReport {
     scene_hash: String,
     scene: SceneDescription,
     volumes: Vec<VolumeReport>,
+    /// What is in it as a whole.
+    contents: Contents,
     /// Guesses and warnings.
     notes: Vec<String>,
 }
@@ -62,7 +65,8 @@ impl SceneReport {
                 .iter()
                 .map(|volume| VolumeReport::new(volume, grid_of(&volume.name)))
                 .collect(),
-            notes: built.notes,
+            contents: Contents::new(&input.description, &built.scene),
+            notes: input.notes.iter().cloned().chain(built.notes).collect(),
         })
     }
 }
@@ -136,6 +140,13 @@ pub fn text(input: &Input, report: &SceneReport) -> String {
             let _ = writeln!(text, "#   {key:<19}{value}");
         }
     }
+    let contents = report.contents.rows();
+    if !contents.is_empty() {
+        let _ = writeln!(text, "\n# the scene");
+        for (key, value) in contents {
+            let _ = writeln!(text, "#   {key:<19}{value}");
+        }
+    }
     for note in &report.notes {
         let _ = writeln!(text, "\n# note: {note}");
     }
@@ -167,6 +178,7 @@ fn rows(volume: &VolumeReport) -> Vec<(&'static str, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::imported::ImportArgs;
     use crate::render::input::load;
     use crate::volume_input::RawArgs;
 
@@ -177,7 +189,9 @@ mod tests {
         let scene = "camera = { position = [0, 0, 9], target = [0, 0, 0] }\n[[volume]]\n\
                      sphere = { center = [1, 2, 3], radius = 2 }\nmu_t = 3\nalbedo = 1\n";
         std::fs::write(&path, scene).unwrap();
-        let report = SceneReport::new(&load(Some(&path), &[], &RawArgs::default()).unwrap()).unwrap();
+        let report =
+            SceneReport::new(&load(Some(&path), &[], &RawArgs::default(), &ImportArgs::default()).unwrap())
+                .unwrap();
         let [volume] = &report.volumes[..] else { panic!("{:?}", report.volumes) };
         assert_eq!(volume.world_box, Some([[-1.0, 0.0, 1.0], [3.0, 4.0, 5.0]]));
         let OpticalThickness { mean, max } = volume.optical_thickness.as_ref().unwrap();

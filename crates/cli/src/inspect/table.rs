@@ -103,7 +103,7 @@ fn world_box(grid: &GridReport) -> [[f64; 3]; 2] {
     [low, high]
 }
 
-fn count(n: usize, what: &str) -> String {
+pub fn count(n: usize, what: &str) -> String {
     format!("{} {what}{}", grouped(n as u64), if n == 1 { "" } else { "s" })
 }
 

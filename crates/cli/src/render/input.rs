@@ -1,4 +1,5 @@
-//! What is to be rendered: the built-in scene, a scene file, or a bare volume with a scene made up for it.
+//! What is to be rendered: the built-in scene, a scene file, one of another renderer, or a bare volume with a scene made up
+//! for it.
 
 use std::path::{Path, PathBuf};
 
@@ -9,6 +10,7 @@ use tyndall_scene::description::{Glow, VolumeSummary};
 use tyndall_scene::{SceneDescription, SceneDocument, choose_density};
 use tyndall_volumes::{Grid, GridValues};
 
+use crate::imported::{self, Foreign, ImportArgs, WrittenFiles};
 use crate::output::Output;
 use crate::volume_input::{self, RawArgs};
 
@@ -20,8 +22,10 @@ pub struct Input {
     pub text: String,
     /// What its file names are relative to.
     pub folder: PathBuf,
-    /// What was guessed.
+    /// What was guessed, and what is not as in the renderer that the scene is for.
     pub notes: Vec<String>,
+    /// Files that the scene of another renderer has written out, and which its description names.
+    pub written: Option<WrittenFiles>,
     /// Name for output files.
     stem: String,
 }
@@ -39,8 +43,14 @@ impl Input {
     }
 }
 
-/// Loads `path`, or the built-in scene, and applies `overrides` of the form `key=value`; `raw` is for a bare volume.
-pub fn load(path: Option<&Path>, overrides: &[String], raw: &RawArgs) -> miette::Result<Input> {
+/// Loads `path`, or the built-in scene, and applies `overrides` of the form `key=value`; `raw` is for a bare volume, `args`
+/// for a scene of another renderer.
+pub fn load(
+    path: Option<&Path>,
+    overrides: &[String],
+    raw: &RawArgs,
+    args: &ImportArgs,
+) -> miette::Result<Input> {
     let Some(path) = path else {
         let document = SceneDocument::parse("the built-in scene", DEFAULT_SCENE)?;
         return from_document(document, overrides, Some(DEFAULT_SCENE), PathBuf::new(), "cloud".into());
@@ -48,21 +58,22 @@ pub fn load(path: Option<&Path>, overrides: &[String], raw: &RawArgs) -> miette:
     volume_input::check_input(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = name.split('.').next().filter(|stem| !stem.is_empty()).unwrap_or("picture").to_owned();
+    if imported::is_foreign(path) && !raw.is_given() {
+        return from_foreign(path, overrides, args, stem);
+    }
+    args.refuse(path)?;
     match name.rsplit('.').next().map(str::to_ascii_lowercase).as_deref() {
-        Some("toml") if raw.is_given() => Err(miette!(
-            "{}: --raw-shape is for a .raw file; give raw_shape and raw_type in the scene's [[volume]]",
+        Some("toml" | "pbrt" | "xml") if raw.is_given() => Err(miette!(
+            "{}: --raw-shape is for a .raw file; a scene says it itself, by raw_shape and raw_type in its [[volume]]",
             path.display()
         )),
         Some("toml") => {
             let folder = path.parent().unwrap_or(Path::new("")).to_owned();
             from_document(SceneDocument::read(path)?, overrides, None, folder, stem)
         }
-        Some("pbrt" | "xml") => Err(miette!(
-            "{}: scene files of other renderers are not read yet; give a .toml scene or a volume file",
-            path.display()
-        )),
         Some("exr" | "png" | "hdr" | "acc" | "json") => Err(miette!(
-            "{}: is not a scene or a volume; give a .toml scene or a volume file (.vdb .nvdb .vol .npy .nii .raw)",
+            "{}: is not a scene or a volume; give a .toml scene, one of pbrt or Mitsuba (.pbrt .xml), or a volume file \
+             (.vdb .nvdb .vol .npy .nii .raw)",
             path.display()
         )),
         _ => from_volume(path, overrides, raw, stem),
@@ -82,7 +93,19 @@ fn from_document(
     let description = document.description()?;
     // Comments survive as long as nothing is changed.
     let text = text.filter(|_| overrides.is_empty()).map_or_else(|| description.to_toml(), str::to_owned);
-    Ok(Input { description, text, folder, notes: Vec::new(), stem })
+    Ok(Input { description, text, folder, notes: Vec::new(), written: None, stem })
+}
+
+/// The scene of another renderer; file names of `overrides` are relative to it.
+fn from_foreign(path: &Path, overrides: &[String], args: &ImportArgs, stem: String) -> miette::Result<Input> {
+    let Foreign { imported, files } = imported::import(path, args)?;
+    let name = format!("{} as a scene of Tyndall", path.display());
+    let document = SceneDocument::parse(&name, &imported.description.to_toml())?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let mut input = from_document(document, overrides, None, folder, stem)?;
+    input.notes = imported.notes.iter().map(ToString::to_string).collect();
+    input.written = Some(files);
+    Ok(input)
 }
 
 /// The scene of a bare volume, made up from its data.

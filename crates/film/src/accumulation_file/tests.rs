@@ -16,6 +16,7 @@ fn metadata() -> ImageMetadata {
         options: "integrator=fast".into(),
         seed: 7,
         colours: Colours::Xyz,
+        crop: None,
         seconds: 2.0,
     }
 }
@@ -32,8 +33,10 @@ fn rendered(samples: Range<u64>, tiles: Range<usize>) -> Film {
                     let u = (x * 31 + y * 17 + index as u32 * 7) as f32 % 10.1;
                     let radiance = [u, u * 1e-7, u * 1e6];
                     let single = radiance.map(|r| r * 0.5);
-                    let hit = index % 2 == 0;
-                    tile.add(x, y, &Sample { radiance, hit, depth: u, single, ..Sample::default() });
+                    let (normal, object, catcher) = ([u * 0.1, -0.1 * u, 0.5], u as u32 % 5, [u * 0.3, u]);
+                    let hit = (index + u64::from(x)).is_multiple_of(2);
+                    let met = Sample { hit, depth: u, normal, object, catcher, ..Sample::default() };
+                    tile.add(x, y, &Sample { radiance, single, ..met });
                 }
             }
         }
@@ -124,14 +127,55 @@ fn every_truncation_is_refused_in_one_line() {
     }
 }
 
+/// Changes text in the header.
+fn with_header(mut bytes: Vec<u8>, from: &str, to: &str) -> Vec<u8> {
+    let at = bytes.windows(from.len()).position(|w| w == from.as_bytes()).unwrap();
+    bytes.splice(at..at + from.len(), to.bytes());
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap());
+    bytes[12..16].copy_from_slice(&(length + to.len() as u32 - from.len() as u32).to_le_bytes());
+    with_right_checksum(bytes)
+}
+
+#[test]
+fn files_of_version_1_are_read_and_those_of_unknown_ones_named() {
+    let layers = Layers { depth: true, single: true, ..Layers::NONE };
+    let mut film = Film::new(20, 3, layers).unwrap();
+    film.open_range(0).unwrap();
+    let mut tile = FilmTile::new(film.tile_rect(0), 0..1, layers);
+    let sample = Sample { radiance: [2.0; 3], hit: true, depth: 3.0, single: [1.0; 3], ..Sample::default() };
+    tile.add(3, 2, &sample);
+    film.merge_tile(&tile);
+    let film = Accumulation { film, metadata: metadata() };
+    let new_layers = r#","normal":false,"object_id":false,"shadow_catcher":false"#;
+    let mut bytes = with_header(bytes_of(&film), new_layers, "");
+    for (version, expected) in [(1, None), (0, Some("version 0")), (3, Some("version 3"))] {
+        bytes[8] = version;
+        let read = Accumulation::decode(&with_right_checksum(bytes.clone()));
+        match expected {
+            None => assert_eq!(read.as_ref(), Ok(&film)),
+            Some(words) => assert!(read.unwrap_err().contains(words)),
+        }
+    }
+}
+
+#[test]
+fn planes_that_are_damaged_are_named() {
+    let good = bytes_of(&complete(0..1));
+    for (from, to, words) in [
+        (r#""object","catcher""#, r#""catcher","object""#, "bad plane"),
+        (r#""normal","object""#, r#""normal","normal""#, "Normal: it occurs twice"),
+        (r#","catcher""#, "", "bytes too many"),
+        (r#","catcher""#, r#","catchers""#, "bad header"),
+    ] {
+        let error = Accumulation::decode(&with_header(good.clone(), from, to)).unwrap_err();
+        assert!(error.contains(words) && !error.contains('\n'), "{error}");
+    }
+}
+
 #[test]
 fn a_header_that_promises_a_vast_film_costs_nothing() {
-    let mut bytes = bytes_of(&complete(0..1));
-    let at = bytes.windows(10).position(|w| w == br#""width":40"#).unwrap();
-    bytes.splice(at..at + 10, *br#""width":4000000"#);
-    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) + 5;
-    bytes[12..16].copy_from_slice(&length.to_le_bytes());
-    let error = Accumulation::decode(&with_right_checksum(bytes)).unwrap_err();
+    let bytes = with_header(bytes_of(&complete(0..1)), r#""width":40"#, r#""width":4000000"#);
+    let error = Accumulation::decode(&bytes).unwrap_err();
     assert!(error.contains("bad plane Pixels"), "{error}");
 }
 

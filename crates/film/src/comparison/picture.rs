@@ -117,7 +117,8 @@ impl Channels {
         let is_picture =
             |p: &str| ["combined", "beauty", "rgba", "rgb", "color"].contains(&last_part(p).as_str());
         let is_other = |p: &str| {
-            ["standarderror", "albedo", "emission", "single", "multiple"].contains(&last_part(p).as_str())
+            ["standarderror", "albedo", "emission", "single", "multiple", "normal"]
+                .contains(&last_part(p).as_str())
         };
         candidates
             .iter()

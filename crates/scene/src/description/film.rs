@@ -53,6 +53,13 @@ impl Default for FilmDescription {
     }
 }
 
+impl FilmDescription {
+    /// Width and height of the picture, pixels: those of the crop, if there is one.
+    pub fn picture_size(&self) -> [u32; 2] {
+        self.crop.map_or(self.resolution, |[_, _, width, height]| [width, height])
+    }
+}
+
 /// A layer of the EXR file beside the picture itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -3,7 +3,7 @@
 //! Directions of the compass in all lights: +y is up, -z is north, +x is east; azimuth counts from north
 //! through east. `direction` is the way the light travels; `toward_sun` points to the sun.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use super::spectrum::SpectrumDescription;
 pub enum LightDescription {
     /// The same radiance from every direction.
     Constant(ConstantLightDescription),
-    /// An equirectangular picture of the surroundings.
+    /// A picture of the surroundings.
     Image(ImageLightDescription),
     /// The clear sky of the Earth, with its sun.
     Sky(SkyDescription),
@@ -38,7 +38,7 @@ pub struct ConstantLightDescription {
     pub radiance: SpectrumDescription,
 }
 
-/// An equirectangular picture of the surroundings: the top row is +y, the middle column is -z (north), and
+/// A picture of the surroundings. Of an equirectangular one the top row is +y, the middle column is -z (north), and
 /// columns to the right of it are +x (east), as seen from inside.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(inline)]
@@ -70,7 +70,8 @@ pub enum ImageMapping {
     /// Longitude and latitude.
     #[default]
     Equirectangular,
-    /// Clarberg 2008's map of the square to the sphere, areas kept, with +z at its centre.
+    /// Clarberg 2008's map of the square to the sphere, areas kept: +z is at its centre, -z at its corners, columns to the
+    /// right are +x and rows downwards +y.
     EqualArea,
 }
 
@@ -212,6 +213,31 @@ fn sun_angular_diameter() -> f64 {
 
 fn one() -> f64 {
     1.0
+}
+
+impl ImageLightDescription {
+    /// The map from directions of the picture to those of the scene: `orientation`, made exactly orthogonal, then
+    /// `rotation`.
+    pub fn orientation(&self) -> DMat3 {
+        let given =
+            self.orientation.map_or(DMat3::IDENTITY, |rows| DMat3::from_cols_array(&rows).transpose());
+        let x = given.x_axis.normalize_or(DVec3::X);
+        let y = (given.y_axis - x * x.dot(given.y_axis)).normalize_or(x.any_orthonormal_vector());
+        let z = x.cross(y);
+        let z = if given.determinant() < 0.0 { -z } else { z };
+        DMat3::from_rotation_y(self.rotation.to_radians()) * DMat3::from_cols(x, y, z)
+    }
+
+    /// What is wrong with the orientation, if anything.
+    pub(super) fn orientation_violation(&self) -> Option<&'static str> {
+        let rows = self.orientation?;
+        let given = DMat3::from_cols_array(&rows);
+        let difference = given * given.transpose() - DMat3::IDENTITY;
+        let is_orthogonal = difference.to_cols_array().iter().all(|value| value.abs() < 1e-3);
+        (!is_orthogonal).then_some(
+            "`orientation` must be a rotation, mirrored or not: three rows of length 1 at right angles to each other",
+        )
+    }
 }
 
 impl SkyDescription {

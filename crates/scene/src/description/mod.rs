@@ -8,6 +8,7 @@ mod automatic;
 mod call;
 mod camera;
 mod emission;
+mod files;
 mod film;
 mod lights;
 mod material;

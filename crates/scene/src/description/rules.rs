@@ -310,7 +310,11 @@ fn light(found: &mut Findings, light: &LightDescription) {
                 );
             }
         }
-        LightDescription::Image(_) => {}
+        LightDescription::Image(image) => {
+            if let Some(message) = image.orientation_violation() {
+                found.report("orientation", message);
+            }
+        }
     }
 }
 

@@ -105,7 +105,7 @@ impl JsonSchema for Names {
 /// counter-clockwise.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeshShape {
-    /// Mesh file (.ply, .obj, .gltf, .glb), relative to the scene file.
+    /// Mesh file (.ply, .obj), relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Places of the vertices.

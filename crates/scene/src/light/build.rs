@@ -11,7 +11,8 @@ use super::{
 };
 use crate::Volume;
 use crate::description::{
-    ImageFilter, LightDescription, ShapeDescription, SpectrumDescription, SurfaceEmission,
+    ImageFilter, ImageLightDescription, ImageMapping, LightDescription, ShapeDescription,
+    SpectrumDescription, SurfaceEmission,
 };
 use crate::error::SceneError;
 use crate::sky::Sky;
@@ -44,9 +45,20 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
                 own_spectrum = Some(radiance);
             }
             LightDescription::Image(description) => {
-                let (image, warning) = read_light_image(&folder.join(&description.file))?;
-                let light =
-                    ImageLight::new(image, description.filter, description.scale, description.rotation);
+                let path = folder.join(&description.file);
+                let (image, warning) = read_light_image(&path)?;
+                let (width, height) = (image.width(), image.height());
+                if description.mapping == ImageMapping::EqualArea && width != height {
+                    return Err(SceneError::file(
+                        &path,
+                        format!(
+                            "has {width} x {height} texels, but a picture of `mapping = \"equal_area\"` is a square"
+                        ),
+                    ));
+                }
+                let orientation = description.orientation();
+                let ImageLightDescription { mapping, filter, scale, .. } = *description;
+                let light = ImageLight::mapped(image, mapping, filter, scale, orientation);
                 built.lights.push(Light::Image(light));
                 built.warnings.extend(warning);
             }

@@ -1,4 +1,4 @@
-//! An equirectangular picture of the surroundings, sampled in proportion to its radiance.
+//! A picture of the surroundings, equirectangular or of equal areas, sampled in proportion to its radiance.
 //!
 //! The sphere is cut into one cell for each texel; a cell is chosen with probability ∝ L̄ Ω, with L̄ the mean
 //! of the *filtered* radiance over the cell and Ω its solid angle, and a direction uniformly within it: pdf =
@@ -7,14 +7,13 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use super::LightSample;
-use super::equirectangular::{direction_to_uv, uv_to_direction};
 use super::texel_distribution::TexelDistribution;
-use crate::description::ImageFilter;
+use super::{LightSample, equal_area, equirectangular};
+use crate::description::{ImageFilter, ImageMapping};
 
-/// Texels of an equirectangular picture, row by row from the top; finite and not negative.
+/// Texels of a picture of the surroundings, row by row from the top; finite and not negative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightImage {
     width: usize,
@@ -67,19 +66,43 @@ impl LightImage {
         DVec3::from_array(self.texels[row * self.width + column].map(f64::from))
     }
 
-    fn bilinear(&self, u: f64, v: f64) -> DVec3 {
+    fn bilinear(&self, mapping: ImageMapping, u: f64, v: f64) -> DVec3 {
         let x = u * self.width as f64 - 0.5;
-        let y = (v * self.height as f64 - 0.5).clamp(0.0, (self.height - 1) as f64);
+        let y = v * self.height as f64 - 0.5;
         let (left, top) = (x.floor(), y.floor());
         let (x, y) = (x - left, y - top);
-        // u wraps around; v ends at the poles.
-        let left = (left + self.width as f64) as usize % self.width;
-        let right = (left + 1) % self.width;
-        let top = top as usize;
-        let bottom = (top + 1).min(self.height - 1);
-        self.texel(left, top)
-            .lerp(self.texel(right, top), x)
-            .lerp(self.texel(left, bottom).lerp(self.texel(right, bottom), x), y)
+        let (left, top) = (left as isize, top as isize);
+        let texel = |column: isize, row: isize| {
+            let [column, row] = self.wrapped(mapping, column, row);
+            self.texel(column, row)
+        };
+        texel(left, top)
+            .lerp(texel(left + 1, top), x)
+            .lerp(texel(left, top + 1).lerp(texel(left + 1, top + 1), x), y)
+    }
+
+    /// The texel that lies on the sphere where a column and a row, at most one beyond the picture, would go on.
+    fn wrapped(&self, mapping: ImageMapping, column: isize, row: isize) -> [usize; 2] {
+        let (width, height) = (self.width as isize, self.height as isize);
+        let [column, row] = match mapping {
+            // Longitude goes round; latitude ends at the poles.
+            ImageMapping::Equirectangular => [column.rem_euclid(width), row.clamp(0, height - 1)],
+            // Each edge is folded together about its middle.
+            ImageMapping::EqualArea => {
+                let beyond = |at: isize, count: isize| at < 0 || at >= count;
+                let (column, row) = if beyond(column, width) {
+                    (column.clamp(0, width - 1), height - 1 - row)
+                } else {
+                    (column, row)
+                };
+                if beyond(row, height) {
+                    [width - 1 - column, row.clamp(0, height - 1)]
+                } else {
+                    [column, row]
+                }
+            }
+        };
+        [column as usize, row as usize]
     }
 
     fn nearest(&self, u: f64, v: f64) -> DVec3 {
@@ -92,6 +115,19 @@ impl LightImage {
         [index(u, self.width), index(v, self.height)]
     }
 
+    /// Mean brightness of the bilinear filter over a texel's cell.
+    fn mean_of_cell(&self, mapping: ImageMapping, column: usize, row: usize) -> f64 {
+        let weights = [(-1, 0.125), (0, 0.75), (1, 0.125)];
+        let mut sum = 0.0;
+        for (down, row_weight) in weights {
+            for (across, column_weight) in weights {
+                let [column, row] = self.wrapped(mapping, column as isize + across, row as isize + down);
+                sum += row_weight * column_weight * self.brightness(column, row);
+            }
+        }
+        sum
+    }
+
     /// Mean over the channels of the texel.
     fn brightness(&self, column: usize, row: usize) -> f64 {
         self.texel(column, row).element_sum() / 3.0
@@ -102,31 +138,46 @@ impl LightImage {
 #[derive(Debug, Clone)]
 pub struct ImageLight {
     image: LightImage,
+    mapping: ImageMapping,
     filter: ImageFilter,
     scale: f64,
-    /// Sine and cosine of the rotation about +y, right-handed.
-    rotation: [f64; 2],
+    /// Directions of the picture to those of the scene; orthogonal.
+    orientation: DMat3,
     /// None if the picture is black: then directions are uniform.
     distribution: Option<TexelDistribution>,
     total: DVec3,
 }
 
 impl ImageLight {
-    /// The surroundings of `image`, times `scale`, turned by `rotation` degrees about +y (right-handed).
+    /// The surroundings of the equirectangular `image`, times `scale`, turned by `rotation` degrees about +y
+    /// (right-handed).
     pub fn new(image: LightImage, filter: ImageFilter, scale: f64, rotation: f64) -> Self {
+        let orientation = DMat3::from_rotation_y(rotation.to_radians());
+        Self::mapped(image, ImageMapping::Equirectangular, filter, scale, orientation)
+    }
+
+    /// The surroundings of `image`, times `scale`; `orientation`, a rotation that may mirror, leads from its directions to
+    /// those of the scene. Equal areas need a picture as wide as it is high.
+    pub fn mapped(
+        image: LightImage,
+        mapping: ImageMapping,
+        filter: ImageFilter,
+        scale: f64,
+        orientation: DMat3,
+    ) -> Self {
         let (width, height) = (image.width, image.height);
         let mut blurred = vec![0.0; width];
         let mut total = DVec3::ZERO;
         let distribution = TexelDistribution::new(width, height, |row, weights| {
-            let solid_angle = cell_solid_angle(width, height, row);
+            let solid_angle = cell_solid_angle(mapping, width, height, row);
             total += (0..width).map(|column| image.texel(column, row)).sum::<DVec3>() * solid_angle;
-            match filter {
-                ImageFilter::Nearest => {
+            match (filter, mapping) {
+                (ImageFilter::Nearest, _) => {
                     for (column, weight) in weights.iter_mut().enumerate() {
                         *weight = image.brightness(column, row) * solid_angle;
                     }
                 }
-                ImageFilter::Bilinear => {
+                (ImageFilter::Bilinear, ImageMapping::Equirectangular) => {
                     let [above, below] = [row.saturating_sub(1), (row + 1).min(height - 1)];
                     for (column, value) in blurred.iter_mut().enumerate() {
                         let outer = image.brightness(column, above) + image.brightness(column, below);
@@ -137,10 +188,14 @@ impl ImageLight {
                         *weight = (0.125 * outer + 0.75 * blurred[column]) * solid_angle;
                     }
                 }
+                (ImageFilter::Bilinear, ImageMapping::EqualArea) => {
+                    for (column, weight) in weights.iter_mut().enumerate() {
+                        *weight = image.mean_of_cell(mapping, column, row) * solid_angle;
+                    }
+                }
             }
         });
-        let (sin, cos) = rotation.to_radians().sin_cos();
-        Self { image, filter, scale, rotation: [sin, cos], distribution, total: total * scale }
+        Self { image, mapping, filter, scale, orientation, distribution, total: total * scale }
     }
 
     /// The picture.
@@ -154,14 +209,20 @@ impl ImageLight {
         };
         let (width, height) = (self.image.width, self.image.height);
         let chosen = distribution.sample(u);
-        // Uniform in solid angle: uniform in u and in the cosine of the polar angle.
-        let [top, bottom] = [chosen.row, chosen.row + 1].map(|edge| (PI * edge as f64 / height as f64).cos());
-        let cos_polar = top + (bottom - top) * chosen.inside[1];
-        let v = cos_polar.clamp(-1.0, 1.0).acos() / PI;
+        // Uniform in solid angle: on the globe, uniform in the cosine of the polar angle.
+        let v = match self.mapping {
+            ImageMapping::EqualArea => (chosen.row as f64 + chosen.inside[1]) / height as f64,
+            ImageMapping::Equirectangular => {
+                let edge = |row: usize| (PI * row as f64 / height as f64).cos();
+                let [top, bottom] = [chosen.row, chosen.row + 1].map(edge);
+                let cos_polar = top + (bottom - top) * chosen.inside[1];
+                cos_polar.clamp(-1.0, 1.0).acos() / PI
+            }
+        };
         let u = (chosen.column as f64 + chosen.inside[0]) / width as f64;
-        let pdf = chosen.probability / cell_solid_angle(width, height, chosen.row);
+        let pdf = chosen.probability / cell_solid_angle(self.mapping, width, height, chosen.row);
         LightSample {
-            toward: self.to_world(uv_to_direction(u, v)),
+            toward: self.orientation * self.uv_to_direction(u, v),
             distance: f64::INFINITY,
             radiance_over_pdf: self.radiance_at(u, v) / pdf,
             pdf,
@@ -170,15 +231,16 @@ impl ImageLight {
     }
 
     pub(super) fn radiance(&self, direction: DVec3) -> DVec3 {
-        let [u, v] = direction_to_uv(self.to_image(direction));
+        let [u, v] = self.direction_to_uv(direction);
         self.radiance_at(u, v)
     }
 
     pub(super) fn pdf(&self, direction: DVec3) -> f64 {
         let Some(distribution) = &self.distribution else { return 1.0 / (4.0 * PI) };
-        let [u, v] = direction_to_uv(self.to_image(direction));
+        let [u, v] = self.direction_to_uv(direction);
         let [column, row] = self.image.texel_at(u, v);
-        distribution.probability(column, row) / cell_solid_angle(self.image.width, self.image.height, row)
+        let (width, height) = (self.image.width, self.image.height);
+        distribution.probability(column, row) / cell_solid_angle(self.mapping, width, height, row)
     }
 
     /// Sum over the texels of radiance times solid angle.
@@ -189,25 +251,36 @@ impl ImageLight {
     fn radiance_at(&self, u: f64, v: f64) -> DVec3 {
         self.scale
             * match self.filter {
-                ImageFilter::Bilinear => self.image.bilinear(u, v),
+                ImageFilter::Bilinear => self.image.bilinear(self.mapping, u, v),
                 ImageFilter::Nearest => self.image.nearest(u, v),
             }
     }
 
-    fn to_world(&self, local: DVec3) -> DVec3 {
-        let [sin, cos] = self.rotation;
-        DVec3::new(cos * local.x + sin * local.z, local.y, cos * local.z - sin * local.x)
+    fn uv_to_direction(&self, u: f64, v: f64) -> DVec3 {
+        match self.mapping {
+            ImageMapping::Equirectangular => equirectangular::uv_to_direction(u, v),
+            ImageMapping::EqualArea => equal_area::equal_area_to_direction(u, v),
+        }
     }
 
-    fn to_image(&self, world: DVec3) -> DVec3 {
-        let [sin, cos] = self.rotation;
-        DVec3::new(cos * world.x - sin * world.z, world.y, cos * world.z + sin * world.x)
+    /// The place in the picture of a direction in the scene.
+    fn direction_to_uv(&self, direction: DVec3) -> [f64; 2] {
+        let direction = self.orientation.transpose() * direction;
+        match self.mapping {
+            ImageMapping::Equirectangular => equirectangular::direction_to_uv(direction),
+            ImageMapping::EqualArea => equal_area::direction_to_equal_area(direction),
+        }
     }
 }
 
-/// Solid angle of a texel's cell: (2π / width) (cos θ_top - cos θ_bottom), as a product without cancellation.
-fn cell_solid_angle(width: usize, height: usize, row: usize) -> f64 {
-    let half_step = 0.5 * PI / height as f64;
-    let middle = PI * (row as f64 + 0.5) / height as f64;
-    2.0 * PI / width as f64 * 2.0 * middle.sin() * half_step.sin()
+/// Solid angle of a texel's cell; on the globe (2π / width) (cos θ_top - cos θ_bottom), as a product without cancellation.
+fn cell_solid_angle(mapping: ImageMapping, width: usize, height: usize, row: usize) -> f64 {
+    match mapping {
+        ImageMapping::EqualArea => 4.0 * PI / (width as f64 * height as f64),
+        ImageMapping::Equirectangular => {
+            let half_step = 0.5 * PI / height as f64;
+            let middle = PI * (row as f64 + 0.5) / height as f64;
+            2.0 * PI / width as f64 * 2.0 * middle.sin() * half_step.sin()
+        }
+    }
 }

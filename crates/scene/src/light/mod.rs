@@ -11,6 +11,7 @@ mod build;
 mod constant;
 mod distant;
 mod emission_bounds;
+mod equal_area;
 mod equirectangular;
 mod image;
 pub(crate) mod image_file;
@@ -28,6 +29,7 @@ pub use self::area::AreaLight;
 pub use self::build::{BuiltLights, build_lights};
 pub use self::constant::ConstantLight;
 pub use self::distant::DistantLight;
+pub use self::equal_area::{direction_to_equal_area, equal_area_to_direction};
 pub use self::equirectangular::{direction_to_uv, uv_to_direction};
 pub use self::image::{ImageLight, LightImage};
 pub use self::image_file::read_light_image;
@@ -42,7 +44,7 @@ pub use self::volume_light::{VolumeLight, VolumeLightSample};
 pub enum Light {
     /// The same radiance from every direction.
     Constant(ConstantLight),
-    /// An equirectangular picture of the surroundings.
+    /// A picture of the surroundings.
     Image(ImageLight),
     /// A far disc of uniform radiance.
     Sun(SunLight),

@@ -64,7 +64,7 @@ impl SphericalRectangle {
         let right_angles = inner_angle(lower, right) + inner_angle(right, upper);
         let left_angles = inner_angle(upper, left) + inner_angle(left, lower);
         let solid_angle = right_angles + left_angles - TAU;
-        (solid_angle > LEAST_SOLID_ANGLE).then(|| Self {
+        (solid_angle > LEAST_SOLID_ANGLE).then_some(Self {
             from,
             frame: [first, second, third],
             x,

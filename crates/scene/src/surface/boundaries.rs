@@ -126,7 +126,7 @@ mod tests {
             uv: [0.0; 2],
             shape,
             primitive: 0,
-            offset: 0.0,
+            offset: 1e-10,
         }
     }
 

@@ -31,7 +31,7 @@ use self::bvh::Bvh;
 pub use self::material::{ConductorIndex, Material};
 pub use self::mesh::{Mesh, read_mesh, write_ply};
 pub use self::picture::Picture;
-use self::placed::Placed;
+use self::placed::{Geometry, Placed};
 pub use self::texture::{Colour, ImageLookup, Placement, Texture};
 pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
@@ -121,6 +121,15 @@ impl Surfaces {
     /// A box around all surfaces that have an end; `None` if there is none.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         self.tree.bounds()
+    }
+
+    /// Number of triangles of all meshes, each counted as often as it stands in the scene.
+    pub fn triangle_count(&self) -> u64 {
+        let triangles = |placed: &Placed| match &placed.geometry {
+            Geometry::Mesh { mesh, .. } => mesh.mesh().triangles.len() as u64,
+            _ => 0,
+        };
+        self.placed.iter().map(triangles).sum()
     }
 
     /// The pieces of a shape in world space, in the order of [`Hit::primitive`]; `None` for an infinite plane, and for a

@@ -10,6 +10,9 @@ use glam::DVec3;
 
 use crate::Ray;
 
+/// A bound, with some margin, on the relative errors of sums of a few products.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A ray with the axes in which it points along +z.
 pub(super) struct ShearedRay {
     origin: DVec3,
@@ -24,6 +27,8 @@ pub(super) struct ShearedRay {
 pub(super) struct TriangleHit {
     /// Distance along the ray, in lengths of its direction.
     pub t: f64,
+    /// How far rounding may have moved it along the ray: up to the length of the triangle, if the ray runs in its plane.
+    pub spread: f64,
     /// Weights of the three vertices; their sum is 1.
     pub weights: [f64; 3],
     /// Whether the ray comes from the outer side.
@@ -53,19 +58,26 @@ impl ShearedRay {
             [p[x] - sx * p[z], p[y] - sy * p[z], sz * p[z]]
         });
         let sides = [cross(c, b), cross(a, c), cross(b, a)];
-        let is_inside = if sides.iter().all(|side| *side != 0.0) {
-            sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
+        let (is_inside, enters) = if sides.iter().all(|side| *side != 0.0) {
+            let enters = sides[0] > 0.0;
+            (sides.iter().all(|side| (*side > 0.0) == enters), enters)
         } else {
             let exact = [exact_side(c, b), exact_side(a, c), exact_side(b, a)];
-            exact[0] != 0 && exact == [exact[0]; 3]
+            (exact[0] != 0 && exact == [exact[0]; 3], exact[0] > 0)
         };
-        let sum = sides[0] + sides[1] + sides[2];
-        if !is_inside || sum == 0.0 {
+        if !is_inside {
             return None;
         }
-        let weights = sides.map(|side| side / sum);
+        let sum = sides[0] + sides[1] + sides[2];
+        // Where the projection is too narrow for numbers the middle is as good as any place.
+        let weights = if sum == 0.0 { [1.0 / 3.0; 3] } else { sides.map(|side| side / sum) };
         let t = weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2];
-        Some(TriangleHit { t, weights, enters: sum > 0.0 })
+        // The weights are as uncertain as the products that they are differences of, relative to their sum.
+        let greatest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
+        let (low, high) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
+        let uncertainty = ROUNDING * greatest(0) * greatest(1) / sum.abs();
+        let spread = uncertainty.min(1.0) * (high - low) + ROUNDING * greatest(2);
+        Some(TriangleHit { t, spread, weights, enters })
     }
 }
 

@@ -1,9 +1,9 @@
 //! A mesh ready to trace: its nearest triangle along a ray.
 //!
-//! Which triangles a ray meets is decided exactly (see `triangle.rs`), but their distances are rounded: at a silhouette
-//! the way in and the way out may come in the wrong order. Therefore hits near an edge are looked at together with all that
-//! rounding cannot tell apart from them: if as many lead in as out, the ray has only touched the mesh and goes on; else it
-//! meets one that leads the way of the majority.
+//! Which triangles a ray meets is decided exactly (see `triangle.rs`), but their distances are rounded: at a silhouette,
+//! and where the ray runs in the plane of a triangle, the way in and the way out may come in the wrong order. Therefore hits
+//! near an edge, and of uncertain distance, are looked at together with all that rounding cannot tell apart from them: if as
+//! many lead in as out, the ray has only touched the mesh and goes on; else it meets one that leads the way of the majority.
 
 use std::cmp::Ordering;
 
@@ -17,8 +17,8 @@ use crate::Ray;
 
 /// Weights of vertices below this are near an edge.
 const NEAR_EDGE: f64 = 1e-6;
-/// Rounding errors of distances, relative to the lengths that they are computed from; with a wide margin.
-const ROUNDING: f64 = 1e-13;
+/// Distances less certain than this, relative to the lengths that they are computed from, are looked into.
+const UNCERTAIN: f64 = 1e-10;
 
 /// Triangles with their tree.
 #[derive(Debug, Clone)]
@@ -69,40 +69,58 @@ impl TriangleMesh {
                 _ => end,
             });
             let (triangle, hit) = nearest?;
-            if hit.weights.iter().all(|weight| *weight > NEAR_EDGE) {
+            let reach = self.size + ray.origin.abs().max_element();
+            let certain = UNCERTAIN * reach / ray.direction.length();
+            if hit.spread < certain && hit.weights.iter().all(|weight| *weight > NEAR_EDGE) {
                 return Some(local(triangle, &hit));
             }
-            let reach = self.size + ray.origin.abs().max_element();
-            let window = hit.t + ROUNDING * reach / ray.direction.length();
-            match self.among_equals(ray, &sheared, begin, window) {
-                Some(hit) => return Some(hit).filter(|hit| hit.t < end),
-                None => begin = window,
+            match self.among_equals(ray, &sheared, begin, hit.t + hit.spread, certain) {
+                (Some(hit), _) => return Some(hit).filter(|hit| hit.t < end),
+                (None, last) => begin = last,
             }
         }
     }
 
-    /// Of the hits up to `window` the nearest that leads the way of the majority; `None` if there is no majority.
+    /// Of the hits that may be before `last`, and those that may be before these, the nearest that leads the way of the
+    /// majority, if there is one, rather one of a distance that is `certain`; and the end of them all.
     #[cold]
-    fn among_equals(&self, ray: &Ray, sheared: &ShearedRay, begin: f64, window: f64) -> Option<LocalHit> {
-        let mut balance = 0;
-        let mut nearest: [Option<LocalHit>; 2] = [None; 2];
-        self.bvh.traverse(ray, window, |triangle, window| {
-            if let Some(hit) = sheared.intersect(self.corners(triangle))
-                && hit.t > begin
-                && hit.t <= window
-            {
-                balance += if hit.enters { 1 } else { -1 };
-                let slot = &mut nearest[usize::from(hit.enters)];
-                if slot.is_none_or(|slot| hit.t < slot.t) {
-                    *slot = Some(local(triangle, &hit));
+    fn among_equals(
+        &self,
+        ray: &Ray,
+        sheared: &ShearedRay,
+        begin: f64,
+        last: f64,
+        certain: f64,
+    ) -> (Option<LocalHit>, f64) {
+        let mut last = last;
+        loop {
+            let (mut balance, mut end) = (0, last);
+            let mut nearest: [Option<(bool, LocalHit)>; 2] = [None; 2];
+            self.bvh.traverse(ray, last, |triangle, last| {
+                if let Some(hit) = sheared.intersect(self.corners(triangle))
+                    && hit.t > begin
+                    && hit.t - hit.spread <= last
+                {
+                    balance += if hit.enters { 1 } else { -1 };
+                    end = end.max(hit.t + hit.spread);
+                    let slot = &mut nearest[usize::from(hit.enters)];
+                    let rank = (hit.spread >= certain, hit.t);
+                    if slot.is_none_or(|(is_uncertain, slot)| rank < (is_uncertain, slot.t)) {
+                        *slot = Some((rank.0, local(triangle, &hit)));
+                    }
                 }
+                last
+            });
+            if end > last {
+                last = end;
+                continue;
             }
-            window
-        });
-        match balance.cmp(&0) {
-            Ordering::Greater => nearest[1],
-            Ordering::Less => nearest[0],
-            Ordering::Equal => None,
+            let majority = match balance.cmp(&0) {
+                Ordering::Greater => nearest[1],
+                Ordering::Less => nearest[0],
+                Ordering::Equal => None,
+            };
+            return (majority.map(|(_, hit)| hit), last);
         }
     }
 

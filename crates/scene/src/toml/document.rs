@@ -12,9 +12,6 @@ use super::tree::{Entry, Node, Place, Value};
 use crate::SceneDescription;
 use crate::error::{Problem, SceneError};
 
-/// The schema of scene files, made once: it is long.
-static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(json_schema);
-
 /// Scene files are written by people or small programs; one of this size is something else.
 const GREATEST_FILE: u64 = 16 << 20;
 
@@ -100,6 +97,7 @@ impl SceneDocument {
 
     /// The description, if the document is a sound scene; else everything that is wrong with it.
     pub fn description(&self) -> Result<SceneDescription, SceneError> {
+        static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(json_schema);
         let mut problems = conformance::problems(&self.root, "the scene", &SCHEMA);
         problems.sort_by_key(|problem| problem.position);
         SceneError::unless_empty(problems)?;

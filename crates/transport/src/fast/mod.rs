@@ -478,6 +478,9 @@ impl<'a> Engine<'a> {
             emission: path.emission.to_array(),
             single: path.single.to_array(),
             multiple: path.multiple.to_array(),
+            normal: first.normal.as_vec3().to_array(),
+            object: first.object,
+            ..Sample::default()
         };
         self.tiles[path.pixel.tile as usize].add(path.pixel.x, path.pixel.y, &sample);
     }

@@ -326,7 +326,7 @@ fn many_lights_and_a_lens() {
     let mut texels = vec![[0.1_f32, 0.2, 0.3]; 8];
     texels[5] = [5.0, 3.0, 1.0];
     lit.lights.push(crate::scenes::image(texels, tyndall_scene::description::ImageFilter::Bilinear));
-    lit.light_probabilities = vec![0.3, 0.2, 0.2, 0.0, 0.3];
+    lit.set_light_probabilities(vec![0.3, 0.2, 0.2, 0.0, 0.3]);
     assert_integrators_agree("many lights", &lit);
 }
 

@@ -24,7 +24,7 @@ pub fn scene(text: &str) -> Scene {
 /// The same scene with next-event estimation towards its lights in these proportions, wanted or not.
 pub fn with_next_event(mut scene: Scene, probabilities: &[f64]) -> Scene {
     assert_eq!(scene.lights.len(), probabilities.len());
-    scene.light_probabilities = probabilities.to_vec();
+    scene.set_light_probabilities(probabilities.to_vec());
     scene
 }
 

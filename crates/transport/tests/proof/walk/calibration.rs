@@ -65,7 +65,7 @@ fn intervals_of_pixels_hold_the_truth_in_95_of_100() {
         "#,
     );
     scene.lights = vec![two_halves([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])];
-    scene.light_probabilities = vec![0.0];
+    scene.set_light_probabilities(vec![0.0]);
     for integrator in BOTH {
         let mut coverage = TRUTH.map(Coverage::new);
         for seed in 0..MEASUREMENTS {

@@ -1,0 +1,118 @@
+//! The transforms of pbrt, all of which are affine; directives multiply from the right.
+
+use glam::{DAffine3, DMat3, DVec3};
+use tyndall_scene::description::TransformDescription;
+
+/// From the world to a camera at `eye` that looks at `target`: its x is to the right as pbrt sees it (left of the
+/// view in a right-handed world), y up, z forward. `None` if the three are degenerate.
+pub(super) fn look_at(numbers: [f64; 9]) -> Option<DAffine3> {
+    let [eye, target, up] = [0, 3, 6].map(|i| DVec3::new(numbers[i], numbers[i + 1], numbers[i + 2]));
+    let forward = (target - eye).try_normalize()?;
+    let right = up.try_normalize()?.cross(forward).try_normalize()?;
+    let camera_to_world =
+        DAffine3 { matrix3: DMat3::from_cols(right, forward.cross(right), forward), translation: eye };
+    Some(camera_to_world.inverse())
+}
+
+/// A rotation about an axis, by degrees. `None` if the axis is 0.
+pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Option<DAffine3> {
+    let axis = DVec3::new(x, y, z).try_normalize()?;
+    Some(DAffine3::from_axis_angle(axis, angle.to_radians()))
+}
+
+/// Sixteen numbers column by column. `None` if they are no affine map.
+pub(super) fn matrix(m: [f64; 16]) -> Option<DAffine3> {
+    let is_affine = m[3] == 0.0 && m[7] == 0.0 && m[11] == 0.0 && m[15] != 0.0;
+    let columns = m.map(|number| number / m[15]);
+    let affine = DAffine3::from_cols_array(&[
+        columns[0],
+        columns[1],
+        columns[2],
+        columns[4],
+        columns[5],
+        columns[6],
+        columns[8],
+        columns[9],
+        columns[10],
+        columns[12],
+        columns[13],
+        columns[14],
+    ]);
+    (is_affine && affine.is_finite()).then_some(affine)
+}
+
+/// The transform in the words of a scene file; `None` for the identity.
+pub(super) fn description(affine: &DAffine3) -> Option<TransformDescription> {
+    if *affine == DAffine3::IDENTITY {
+        return None;
+    }
+    let DAffine3 { matrix3: m, translation: t } = *affine;
+    if m == DMat3::IDENTITY {
+        return Some(TransformDescription { translate: Some(t.to_array()), ..Default::default() });
+    }
+    let rows = [m.row(0), m.row(1), m.row(2)];
+    let row = |i: usize| [rows[i].x, rows[i].y, rows[i].z, t[i]];
+    let [a, b, c] = [row(0), row(1), row(2)];
+    let matrix = [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], 0.0, 0.0, 0.0, 1.0];
+    Some(TransformDescription { matrix: Some(matrix), ..Default::default() })
+}
+
+/// Whether the map can be undone, with room for rounding.
+pub(super) fn is_regular(affine: &DAffine3) -> bool {
+    affine.is_finite() && affine.matrix3.determinant() != 0.0 && affine.inverse().is_finite()
+}
+
+/// The factor of a map that scales all directions alike.
+pub(super) fn uniform_scale(affine: &DAffine3) -> Option<f64> {
+    let m = affine.matrix3;
+    let gram = m.transpose() * m;
+    let square = gram.x_axis.x;
+    let off = (gram - DMat3::from_diagonal(DVec3::splat(square))).to_cols_array();
+    let is_similarity = square > 0.0 && off.iter().all(|number| number.abs() <= 1e-9 * square);
+    is_similarity.then(|| square.sqrt())
+}
+
+/// Whether a map takes axes to axes, so that boxes along them stay such boxes.
+pub(super) fn keeps_axes(affine: &DAffine3) -> bool {
+    let columns = [affine.matrix3.x_axis, affine.matrix3.y_axis, affine.matrix3.z_axis];
+    columns.iter().all(|column| {
+        let greatest = column.abs().max_element();
+        column.to_array().iter().filter(|number| number.abs() > 1e-9 * greatest).count() == 1
+    })
+}
+
+/// The box around a box after a map.
+pub(super) fn map_box(affine: &DAffine3, [min, max]: [DVec3; 2]) -> [DVec3; 2] {
+    let corners = (0..8).map(|corner| {
+        let choose = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
+        affine.transform_point3(DVec3::new(choose(0), choose(1), choose(2)))
+    });
+    corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[least, greatest], corner| {
+        [least.min(corner), greatest.max(corner)]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn look_at_puts_the_target_on_the_z_axis_and_the_up_vector_above() {
+        let to_camera = look_at([0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
+        let moved = |x: f64, y: f64, z: f64| to_camera.transform_point3(DVec3::new(x, y, z));
+        assert!((moved(0.0, 0.0, 0.0) - DVec3::new(0.0, 0.0, 4.0)).length() < 1e-12);
+        assert!((moved(0.0, 1.0, 0.0) - DVec3::new(0.0, 1.0, 4.0)).length() < 1e-12);
+        // pbrt's camera space is left-handed.
+        assert!((moved(1.0, 0.0, 0.0) - DVec3::new(-1.0, 0.0, 4.0)).length() < 1e-12);
+        assert_eq!(look_at([0.0; 9]), None);
+    }
+
+    #[test]
+    fn matrices_are_written_column_by_column() {
+        let numbers = [1.0, 2.0, 3.0, 0.0, 4.0, 5.0, 6.0, 0.0, 7.0, 8.0, 10.0, 0.0, 10.0, 20.0, 30.0, 1.0];
+        let affine = matrix(numbers).unwrap();
+        assert_eq!(affine.transform_point3(DVec3::X), DVec3::new(11.0, 22.0, 33.0));
+        assert_eq!(description(&affine).unwrap().to_affine(), affine);
+        assert_eq!(matrix([1.0; 16]), None);
+    }
+}
