@@ -28,6 +28,7 @@ use sided::{Direct, Sided, draw_light, lamp_radiance};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
+use tyndall_scene::Scene;
 use volume::Kind;
 
 /// Throughput below which roulette is played; survivors get twice this.
@@ -358,22 +359,24 @@ impl<'a> Engine<'a> {
         path.turns += 1;
         path.scatterings += 1;
 
-        if self.scene.is_sided {
-            self.sided[slot].collide(self.scene.scene, f64::from(distance));
-        }
-        let mut traced = choose_direct(self.scene, path, volume.phase, random);
-        if traced && self.scene.is_sided {
-            let toward = path.shadow_direction.as_dvec3().normalize();
-            let light_distance = f64::from(path.light_distance);
-            traced = self.sided[slot].sees(self.scene.scene, toward, light_distance, random);
-        }
+        let here = match self.sided.get_mut(slot) {
+            Some(sided) => sided.collide(self.scene.scene, f64::from(distance)),
+            None => self.scene.to_world(path.position),
+        };
+        let traced = match choose_direct(self.scene.scene, here, path, volume.phase, random) {
+            // In f64: rounded, the end of the shadow ray might lie behind the lamp's own surface.
+            Some((toward, distance)) if self.scene.is_sided => {
+                self.sided[slot].sees(self.scene.scene, toward, distance, random)
+            }
+            direct => direct.is_some(),
+        };
 
         let before = path.direction;
         path.direction = volume.phase.sample(before, random.f32x2());
         path.turn_pdf = volume.phase.value(before, path.direction);
-        path.turned = Some(self.scene.to_world(path.position));
-        if self.scene.is_sided {
-            self.sided[slot].ray.direction = path.direction.as_dvec3().normalize();
+        path.turned = Some(here);
+        if let Some(sided) = self.sided.get_mut(slot) {
+            sided.ray.direction = path.direction.as_dvec3().normalize();
         }
         if traced { Next::LookAtLight } else { Next::Fly }
     }
@@ -486,38 +489,43 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// Draws a light and what it would bring by the next event; `false` if there is nothing to trace or roulette, played
-/// on the contribution before the shadow ray is paid for, ended it.
+/// Draws a light for the place `from`, and what it would bring by the next event; its direction and distance, or `None` if there is nothing to
+/// trace or roulette, played on the contribution before the shadow ray is paid for, ended it.
 #[inline(always)]
-fn choose_direct(scene: &FastScene, path: &mut Path, phase: volume::Phase<'_>, random: &mut Random) -> bool {
-    let from = scene.to_world(path.position);
+fn choose_direct(
+    scene: &Scene,
+    from: DVec3,
+    path: &mut Path,
+    phase: volume::Phase<'_>,
+    random: &mut Random,
+) -> Option<(DVec3, f64)> {
     let before = path.direction;
     let value = |toward: DVec3| {
         let phase = f64::from(phase.value(before, toward.as_vec3()));
         (DVec3::splat(phase), phase)
     };
-    let direct = draw_light(scene.scene, from, value, random);
+    let direct = draw_light(scene, from, value, random);
     let Some(Direct { unshadowed, arriving, toward, distance }) = direct else {
-        return false;
+        return None;
     };
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
     if strength <= 0.0 {
-        return false;
+        return None;
     }
     let isotropic = arriving.max_element() * 0.25 * std::f32::consts::FRAC_1_PI;
     let traced = strength / (CERTAIN_CONTRIBUTION * isotropic);
     let mut boost = 1.0;
     if traced < 1.0 {
         if random.f32() >= traced {
-            return false;
+            return None;
         }
         boost = 1.0 / traced;
     }
     path.direct = direct * boost;
     path.shadow_direction = toward.as_vec3();
     path.light_distance = distance as f32;
-    true
+    Some((toward, distance))
 }
 
 /// Ends a weak path with a probability that its survivors' weight makes up for; `refraction` is the part of the throughput

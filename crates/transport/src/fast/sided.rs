@@ -55,10 +55,11 @@ impl Sided {
         self.way = Way::trace(scene, &self.ray, f64::INFINITY, &self.presence, random);
     }
 
-    /// Moves to the collision at the distance `t`.
-    pub fn collide(&mut self, scene: &Scene, t: f64) {
+    /// Moves to the collision at the distance `t`; its place.
+    pub fn collide(&mut self, scene: &Scene, t: f64) -> DVec3 {
         self.presence = self.way.presence_at(scene, self.ray.direction, t);
         self.ray.origin = self.ray.at(t);
+        self.ray.origin
     }
 
     /// The surface at the end of the way.
