@@ -18,8 +18,8 @@ use crate::way::Way;
 /// A choice of estimators; what is best as a rule where there is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Estimators {
-    /// For distances. With [`DistanceSampler::Equiangular`] paths go on by default sampling, and point lights are sampled at
-    /// equiangular places as well.
+    /// For distances. With [`DistanceSampler::Equiangular`] paths go on by default sampling, and lights at a
+    /// place are sampled at equiangular places as well.
     pub distance: Option<DistanceSampler>,
     /// For shadow rays.
     pub transmittance: Option<TransmittanceEstimator>,
@@ -154,12 +154,11 @@ fn validate(properties: &Properties, scene: &Scene) -> Result<(), Reason> {
                 }
             }
             Need::PointLight => {
-                let is_sampled = |(light, probability): (&Light, &f64)| {
-                    matches!(light, Light::Point(_)) && *probability > 0.0
-                };
+                let is_sampled =
+                    |(light, probability): (&Light, &f64)| LitSegment::samples(light) && *probability > 0.0;
                 if !scene.lights.iter().zip(&scene.light_probabilities).any(is_sampled) {
                     return Err(Reason(format!(
-                        "{name}: the scene has no point light to sample; add one, or take another sampler"
+                        "{name}: the scene has no point light, spot light or lamp to sample; add one, or take another sampler"
                     )));
                 }
             }

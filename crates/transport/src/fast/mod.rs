@@ -290,7 +290,9 @@ impl<'a> Engine<'a> {
                     [rays.ix[slot], rays.iy[slot], rays.iz[slot]] = inverse.to_array();
                     rays.t[slot] = enter;
                     rays.end[slot] = leave;
-                    rays.nudge[slot] = nudge / direction.abs().max_element();
+                    // From far away f32 may not tell distances apart that differ by so little, and the ray would stand still.
+                    rays.nudge[slot] =
+                        (nudge / direction.abs().max_element()).max(4.0 * f32::EPSILON * leave);
                     rays.mu_t[slot] = mu_t;
                     rays.volume[slot] = number as u32;
                     path.place = place as u32;
