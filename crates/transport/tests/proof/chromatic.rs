@@ -25,7 +25,7 @@ pub const BATCHES: u64 = 16;
 
 /// The scene with the extinction of each volume multiplied by `factors` in red, green and blue, and phase functions of
 /// mean cosine `g` in all volumes if there are any.
-fn chromatic(mut scene: Scene, factors: DVec3, g: Option<[f64; 3]>) -> Scene {
+pub fn chromatic(mut scene: Scene, factors: DVec3, g: Option<[f64; 3]>) -> Scene {
     for volume in &mut scene.volumes {
         let medium = &mut volume.medium;
         let phase_functions = g.map(|g| g.map(|g| PhaseFunction::HenyeyGreenstein { g }));

@@ -15,5 +15,6 @@ mod scenes;
 mod slab;
 mod spectrum;
 mod statistics;
+mod surfaces;
 mod walk;
 mod white_furnace;
