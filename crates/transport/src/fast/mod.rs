@@ -508,9 +508,7 @@ fn choose_direct(
         (DVec3::splat(phase), phase)
     };
     let direct = draw_light(scene, from, value, random);
-    let Some(Direct { unshadowed, arriving, toward, distance }) = direct else {
-        return None;
-    };
+    let Direct { unshadowed, arriving, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
     if strength <= 0.0 {
