@@ -28,6 +28,24 @@ pub(crate) struct FirstMet {
     pub normal: DVec3,
     /// Number of the surface's object; 0 of a collision.
     pub object: u32,
+    /// Of a shadow catcher, what it reflects: as it is, and if nothing stood in the way.
+    pub caught: Option<[f32; 2]>,
+}
+
+impl FirstMet {
+    /// The sample of a path that met this, or nothing, first.
+    pub fn describe(first: Option<FirstMet>, sample: Sample) -> Sample {
+        let Some(first) = first else { return sample };
+        Sample {
+            hit: first.caught.is_none(),
+            depth: first.distance as f32,
+            albedo: first.albedo.as_vec3().to_array(),
+            normal: first.normal.as_vec3().to_array(),
+            object: first.object,
+            catcher: first.caught.unwrap_or_default(),
+            ..sample
+        }
+    }
 }
 
 impl<C: Copy + Add<Output = C> + AddAssign> PathLayers<C> {
@@ -43,18 +61,13 @@ impl<C: Copy + Add<Output = C> + AddAssign> PathLayers<C> {
     /// The film's sample; `colour` makes the film's three channels of the path's.
     pub fn into_sample(self, colour: impl Fn(C) -> DVec3) -> Sample {
         let colour = |channels: C| colour(channels).as_vec3().to_array();
-        let first = self.first.unwrap_or_default();
-        Sample {
+        let sample = Sample {
             radiance: colour(self.background + self.emission + self.single + self.multiple),
-            hit: self.first.is_some(),
-            depth: first.distance as f32,
-            albedo: first.albedo.as_vec3().to_array(),
             emission: colour(self.emission),
             single: colour(self.single),
             multiple: colour(self.multiple),
-            normal: first.normal.as_vec3().to_array(),
-            object: first.object,
             ..Sample::default()
-        }
+        };
+        FirstMet::describe(self.first, sample)
     }
 }

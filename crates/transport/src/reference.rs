@@ -27,6 +27,7 @@ use crate::emission::weighted_emission_along;
 use crate::equiangular_light::{Found, LitSegment};
 use crate::estimators::{Estimators, SceneFlight};
 use crate::path_layers::{FirstMet, PathLayers};
+use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
 
@@ -54,7 +55,7 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
         if turns == 0 || shines {
             let collision = estimators.analog_collision(scene, &path.ray, &way, &flight, random);
             if turns == 0 {
-                layers.first = first_met(scene, &path.ray, &way, collision);
+                layers.first = first_met(scene, &path.ray, &way, collision, random);
             }
             if shines {
                 let end = collision.map_or(way.end, |(distance, _)| distance);
@@ -121,7 +122,8 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
                 path.throughput *= weight;
                 let surface = SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb);
                 path.presence = way.presence_at(scene, path.ray.direction, hit.t);
-                if !may_turn {
+                let is_caught = turns == 0 && surface.is_shadow_catcher(scene);
+                if is_caught || !may_turn {
                     break;
                 }
                 turns += 1;
@@ -151,13 +153,25 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
 }
 
 /// What a camera ray meets first.
-fn first_met(scene: &Scene, ray: &Ray, way: &Way, collision: Option<(f64, usize)>) -> Option<FirstMet> {
+fn first_met(
+    scene: &Scene,
+    ray: &Ray,
+    way: &Way,
+    collision: Option<(f64, usize)>,
+    random: &mut Random,
+) -> Option<FirstMet> {
     if let Some((distance, volume)) = collision {
         let albedo = scene.volumes[volume].albedo_at(ray.at(distance));
         return Some(FirstMet { distance, albedo, ..FirstMet::default() });
     }
-    let surface = SurfaceVertex::new(scene, &way.hit?, ray.direction, &Channels::Rgb);
-    Some(surface.first_met(scene, surface.albedo().truncate()))
+    let hit = way.hit?;
+    let surface = SurfaceVertex::new(scene, &hit, ray.direction, &Channels::Rgb);
+    let mut first = surface.first_met(scene, surface.albedo().truncate());
+    if surface.is_shadow_catcher(scene) {
+        let presence = way.presence_at(scene, ray.direction, hit.t);
+        first.caught = Some(shadow_catcher::reflected(scene, &surface, &presence, random));
+    }
+    Some(first)
 }
 
 /// Where a path last turned, and the density with which it did so into its direction.

@@ -47,7 +47,12 @@ impl SurfaceVertex {
     /// What the film is told of the surface, whose albedo is `albedo`.
     pub fn first_met(&self, scene: &Scene, albedo: DVec3) -> FirstMet {
         let object = scene.surfaces.shape(&self.hit).id;
-        FirstMet { distance: self.hit.t, albedo, normal: self.hit.shading_normal, object }
+        FirstMet { distance: self.hit.t, albedo, normal: self.hit.shading_normal, object, caught: None }
+    }
+
+    /// Whether only the shadows on the surface are wanted.
+    pub fn is_shadow_catcher(&self, scene: &Scene) -> bool {
+        scene.surfaces.shape(&self.hit).is_shadow_catcher
     }
 
     /// The surface's reflectance or so, for the film.

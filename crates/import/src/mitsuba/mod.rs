@@ -1,6 +1,6 @@
 //! Scenes of Mitsuba 3 (XML), and of Mitsuba 0.x as far as they are alike.
 //!
-//! Two steps: [`document`] reads objects with their properties, [`importer`] says the same in Tyndall's terms, a file
+//! Two steps: `document` reads objects with their properties, `importer` says the same in Tyndall's terms, a file
 //! for each class of objects. What Mitsuba's RGB variants render is taken for what the scene means: spectra keep their
 //! wavelengths, `<rgb>` is linear Rec. 709.
 //!

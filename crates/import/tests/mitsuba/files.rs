@@ -34,9 +34,8 @@ fn included_scenes_stand_where_they_are_included() {
             "<scene version=\"3.0.0\"><emitter type=\"point\"><float name=\"intensity\" value=\"{value}\"/></emitter></scene>"
         )
     };
-    let inner = format!(
-        "<scene version=\"3.0.0\"><include filename=\"deep.xml\"/><default name=\"x\" value=\"4\"/></scene>"
-    );
+    let inner =
+        "<scene version=\"3.0.0\"><include filename=\"deep.xml\"/><default name=\"x\" value=\"4\"/></scene>";
     let lone = "<emitter version=\"3.0.0\" type=\"point\"><float name=\"intensity\" value=\"5\"/></emitter>";
     let scene = format!(
         "<scene version=\"3.0.0\"><path value=\"parts\"/><include filename=\"inner.xml\"/><include filename=\"lone.xml\"/>\

@@ -162,11 +162,9 @@ fn tables_and_other_blends_are_tabulated() {
         assert!(matches!(phase, PhaseDescription::Tabulated { .. }));
         let built = tyndall_scene::build_phase(&phase, folder.0.path()).unwrap();
         move |cosine: f64| -> f64 {
-            let value = built
+            built
                 .at(550.0)
-                .value(glam::DVec3::Z, glam::DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine));
-            drop(&folder);
-            value
+                .value(glam::DVec3::Z, glam::DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine))
         }
     };
     let pi = std::f64::consts::PI;

@@ -20,6 +20,7 @@ use volume::FastVolume;
 
 use crate::emission::{path_weight, weighted_emission_along};
 use crate::path_layers::FirstMet;
+use crate::shadow_catcher;
 use crate::way::Span;
 use glam::{DVec3, Vec3};
 use march::List;
@@ -396,7 +397,14 @@ impl<'a> Engine<'a> {
 
         let vertex = sided.vertex(scene, &hit);
         if path.turns == 0 {
-            path.first = Some(vertex.first_met(scene, vertex.albedo().truncate()));
+            let mut first = vertex.first_met(scene, vertex.albedo().truncate());
+            if vertex.is_shadow_catcher(scene) {
+                first.caught = Some(shadow_catcher::reflected(scene, &vertex, &sided.presence, random));
+            }
+            path.first = Some(first);
+            if first.caught.is_some() {
+                return Next::Record;
+            }
         }
         if scene.max_depth.is_some_and(|depth| path.turns >= depth) {
             return Next::Record;
@@ -474,19 +482,14 @@ impl<'a> Engine<'a> {
     fn record(&mut self, slot: usize) {
         let path = &self.paths[slot];
         let radiance = path.background + path.emission + path.single + path.multiple;
-        let first = path.first.unwrap_or_default();
         let sample = Sample {
             radiance: radiance.to_array(),
-            hit: path.first.is_some(),
-            depth: first.distance as f32,
-            albedo: first.albedo.as_vec3().to_array(),
             emission: path.emission.to_array(),
             single: path.single.to_array(),
             multiple: path.multiple.to_array(),
-            normal: first.normal.as_vec3().to_array(),
-            object: first.object,
             ..Sample::default()
         };
+        let sample = FirstMet::describe(path.first, sample);
         self.tiles[path.pixel.tile as usize].add(path.pixel.x, path.pixel.y, &sample);
     }
 }
@@ -507,9 +510,7 @@ fn choose_direct(
         (DVec3::splat(phase), phase)
     };
     let direct = draw_light(scene, from, value, random);
-    let Some(Direct { unshadowed, arriving, toward, distance }) = direct else {
-        return None;
-    };
+    let Direct { unshadowed, arriving, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
     if strength <= 0.0 {

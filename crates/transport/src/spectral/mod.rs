@@ -49,6 +49,7 @@ use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
 use crate::emission::{emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight};
 use crate::path_layers::{FirstMet, PathLayers};
+use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
 
@@ -200,14 +201,21 @@ impl<'a> SpectralScene<'a> {
             let Some(hit) = way.hit else { break };
 
             let surface = SurfaceVertex::new(scene, &hit, path.ray.direction, &self.channels);
+            path.presence = way.presence_at(scene, path.ray.direction, hit.t);
             if turns == 0 {
-                layers.first = Some(surface.first_met(scene, self.surface_albedo(&hit, &path.ray)));
+                let mut first = surface.first_met(scene, self.surface_albedo(&hit, &path.ray));
+                if surface.is_shadow_catcher(scene) {
+                    first.caught = Some(shadow_catcher::reflected(scene, &surface, &path.presence, random));
+                }
+                layers.first = Some(first);
+                if first.caught.is_some() {
+                    break;
+                }
             }
             if !may_turn {
                 break;
             }
             turns += 1;
-            path.presence = way.presence_at(scene, path.ray.direction, hit.t);
             if !surface.is_delta() {
                 let vertex = Vertex {
                     position: surface.position(),
