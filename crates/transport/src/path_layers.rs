@@ -1,6 +1,6 @@
 //! A path's contributions, in three colours or four channels, by what made them.
 
-use std::ops::{Add, AddAssign};
+use std::ops::{Add, AddAssign, Mul};
 
 use glam::DVec3;
 use tyndall_film::Sample;
@@ -15,6 +15,15 @@ pub(crate) struct PathLayers<C> {
     background: C,
     single: C,
     multiple: C,
+}
+
+/// Light that next-event estimation brings.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct DirectLight<C> {
+    /// What arrives and is sent on, before the weight of the path.
+    pub radiance: C,
+    /// Whether a medium sent it out.
+    pub is_glow: bool,
 }
 
 /// What a camera ray meets first: a collision, or a surface.
@@ -48,13 +57,23 @@ impl FirstMet {
     }
 }
 
-impl<C: Copy + Add<Output = C> + AddAssign> PathLayers<C> {
+impl<C: Copy + Add<Output = C> + AddAssign + Mul<Output = C>> PathLayers<C> {
     /// Adds light that media have scattered so many times.
     pub fn add(&mut self, scatterings: u32, radiance: C) {
         match scatterings {
             0 => self.background += radiance,
             1 => self.single += radiance,
             _ => self.multiple += radiance,
+        }
+    }
+
+    /// Adds what a path of this weight has found by next-event estimation.
+    pub fn add_direct(&mut self, scatterings: u32, weight: C, light: DirectLight<C>) {
+        let radiance = weight * light.radiance;
+        if light.is_glow {
+            self.emission += radiance;
+        } else {
+            self.add(scatterings, radiance);
         }
     }
 

@@ -26,7 +26,7 @@ use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 use crate::emission::weighted_emission_along;
 use crate::equiangular_light::{Found, LitSegment};
 use crate::estimators::{Estimators, SceneFlight};
-use crate::path_layers::{FirstMet, PathLayers};
+use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
@@ -111,7 +111,7 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
                     },
                     leave: |direction| (Ray { origin: position, direction }, path.presence.clone()),
                 };
-                layers.add(scatterings, path.throughput * shadow.next_event(&vertex, random));
+                layers.add_direct(scatterings, path.throughput, shadow.next_event(&vertex, random));
 
                 let onward = phase_function.sample(before, [random.f64(), random.f64()]);
                 let pdf = phase_function.value(before, onward);
@@ -135,7 +135,7 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
                         value: |toward| (surface.value(toward).truncate(), surface.pdf(toward)),
                         leave: |direction| surface.leave(scene, direction, &path.presence),
                     };
-                    layers.add(scatterings, path.throughput * shadow.next_event(&vertex, random));
+                    layers.add_direct(scatterings, path.throughput, shadow.next_event(&vertex, random));
                 }
 
                 let Some(onward) = surface.sample(random) else { break };
@@ -318,18 +318,36 @@ struct Shadow<'a> {
 
 impl Shadow<'_> {
     /// Next-event estimation of ∫ f L dω over the light that arrives unscattered at the vertex.
-    fn next_event<V, L>(&self, vertex: &Vertex<V, L>, random: &mut Random) -> DVec3
+    fn next_event<V, L>(&self, vertex: &Vertex<V, L>, random: &mut Random) -> DirectLight<DVec3>
     where
         V: Fn(DVec3) -> (DVec3, f64),
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Some((number, probability)) = self.scene.choose_light(vertex.position, random.f64()) else {
-            return DVec3::ZERO;
+            return DirectLight::default();
         };
+        let is_glow = matches!(self.scene.lights[number], Light::Volume(_));
+        let radiance = if is_glow {
+            self.glow(vertex, number, probability, random)
+        } else {
+            self.lamp_or_surroundings(vertex, number, probability, random)
+        };
+        DirectLight { radiance, is_glow }
+    }
+
+    /// That of a light that is no volume.
+    fn lamp_or_surroundings<V, L>(
+        &self,
+        vertex: &Vertex<V, L>,
+        number: usize,
+        probability: f64,
+        random: &mut Random,
+    ) -> DVec3
+    where
+        V: Fn(DVec3) -> (DVec3, f64),
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
         let light = &self.scene.lights[number];
-        if let Light::Volume(_) = light {
-            return self.glow(vertex, number, probability, random);
-        }
         let u = [random.f64(), random.f64()];
         let segment = self.segment.as_ref().filter(|_| LitSegment::samples(light));
         let sample = match segment {

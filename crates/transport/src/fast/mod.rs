@@ -414,11 +414,12 @@ impl<'a> Engine<'a> {
         let mut traced = false;
         if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
-            if let Some(Direct { unshadowed, toward, distance, .. }) =
+            if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
                 draw_light(scene, vertex.position(), value, random)
                 && unshadowed != Vec3::ZERO
             {
                 path.direct = path.throughput * unshadowed;
+                path.direct_is_glow = is_glow;
                 path.shadow_direction = toward.as_vec3();
                 path.light_distance = distance as f32;
                 traced = sided.sees_from(scene, &vertex, toward, distance, random);
@@ -451,7 +452,11 @@ impl<'a> Engine<'a> {
     fn add_direct(&mut self, slot: usize) {
         let path = &mut self.paths[slot];
         let direct = path.direct * self.rays.transmittance[slot];
-        path.add_in_scattered(direct);
+        if path.direct_is_glow {
+            path.emission += direct;
+        } else {
+            path.add_in_scattered(direct);
+        }
     }
 
     /// The path leaves all volumes: what the infinite lights shine along it, weighted against next-event
@@ -510,7 +515,7 @@ fn choose_direct(
         (DVec3::splat(phase), phase)
     };
     let direct = draw_light(scene, from, value, random);
-    let Direct { unshadowed, arriving, toward, distance } = direct?;
+    let Direct { unshadowed, arriving, is_glow, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
     if strength <= 0.0 {
@@ -526,6 +531,7 @@ fn choose_direct(
         boost = 1.0 / traced;
     }
     path.direct = direct * boost;
+    path.direct_is_glow = is_glow;
     path.shadow_direction = toward.as_vec3();
     path.light_distance = distance as f32;
     Some((toward, distance))

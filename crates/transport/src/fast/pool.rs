@@ -102,6 +102,8 @@ pub(super) struct Path {
     pub place: u32,
     /// What the shadow ray brings if nothing is in its way.
     pub direct: Vec3,
+    /// Whether a medium sent that out.
+    pub direct_is_glow: bool,
     pub shadow_direction: Vec3,
     pub light_distance: f32,
     /// Where the current ray ends at the latest.

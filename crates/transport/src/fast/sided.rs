@@ -34,6 +34,8 @@ pub(super) struct Direct {
     pub unshadowed: Vec3,
     /// The light alone, over its density: what an even vertex without competition would bring.
     pub arriving: Vec3,
+    /// Whether a medium sent it out.
+    pub is_glow: bool,
     pub toward: DVec3,
     pub distance: f64,
 }
@@ -144,7 +146,7 @@ pub(super) fn draw_light(
         let density = distance * distance * sample.pdf_volume * probability;
         let arriving = source / density;
         let unshadowed = (value * arriving * weight).as_vec3();
-        return Some(Direct { unshadowed, arriving: arriving.as_vec3(), toward, distance });
+        return Some(Direct { unshadowed, arriving: arriving.as_vec3(), is_glow: true, toward, distance });
     }
     let sample = light.sample(from, [random.f64(), random.f64()]);
     let (value, path_pdf) = value(sample.toward);
@@ -153,5 +155,5 @@ pub(super) fn draw_light(
     let arriving = sample.radiance_over_pdf / probability;
     let unshadowed = (value * arriving * weight).as_vec3();
     let (arriving, toward) = (arriving.as_vec3(), sample.toward);
-    Some(Direct { unshadowed, arriving, toward, distance: sample.distance })
+    Some(Direct { unshadowed, arriving, is_glow: false, toward, distance: sample.distance })
 }

@@ -48,7 +48,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
 use crate::emission::{emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight};
-use crate::path_layers::{FirstMet, PathLayers};
+use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
@@ -184,7 +184,7 @@ impl<'a> SpectralScene<'a> {
                     },
                     leave: |direction| (Ray { origin: position, direction }, path.presence.clone()),
                 };
-                layers.add(scatterings, path.weight * self.next_event(&vertex, &path, random));
+                layers.add_direct(scatterings, path.weight, self.next_event(&vertex, &path, random));
 
                 let onward = medium.phases.of(hero).sample(before, [random.f64(), random.f64()]);
                 let phases = medium.phases.values(before, onward);
@@ -222,7 +222,7 @@ impl<'a> SpectralScene<'a> {
                     value: |toward| (surface.value(toward), DVec4::splat(surface.pdf(toward))),
                     leave: |direction| surface.leave(scene, direction, &path.presence),
                 };
-                layers.add(scatterings, path.weight * self.next_event(&vertex, &path, random));
+                layers.add_direct(scatterings, path.weight, self.next_event(&vertex, &path, random));
             }
             let Some(onward) = surface.sample(random) else { break };
             path.weight *= onward.weight;
@@ -317,18 +317,37 @@ impl<'a> SpectralScene<'a> {
 
     /// Next-event estimation of ∫ f L dω over the light that arrives unscattered at the vertex, times the path's
     /// densities over their mean.
-    fn next_event<V, L>(&self, vertex: &Vertex<V, L>, path: &Path, random: &mut Random) -> DVec4
+    fn next_event<V, L>(&self, vertex: &Vertex<V, L>, path: &Path, random: &mut Random) -> DirectLight<DVec4>
     where
         V: Fn(DVec3) -> (DVec4, DVec4),
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Some((number, probability)) = self.scene.choose_light(vertex.position, random.f64()) else {
-            return DVec4::ZERO;
+            return DirectLight::default();
         };
+        let is_glow = matches!(self.scene.lights[number], Light::Volume(_));
+        let radiance = if is_glow {
+            self.glow(vertex, path, number, probability, random)
+        } else {
+            self.lamp_or_surroundings(vertex, path, number, probability, random)
+        };
+        DirectLight { radiance, is_glow }
+    }
+
+    /// That of a light that is no volume.
+    fn lamp_or_surroundings<V, L>(
+        &self,
+        vertex: &Vertex<V, L>,
+        path: &Path,
+        number: usize,
+        probability: f64,
+        random: &mut Random,
+    ) -> DVec4
+    where
+        V: Fn(DVec3) -> (DVec4, DVec4),
+        L: Fn(DVec3) -> (Ray, Presence),
+    {
         let light = &self.scene.lights[number];
-        if let Light::Volume(_) = light {
-            return self.glow(vertex, path, number, probability, random);
-        }
         let sample = light.sample(vertex.position, [random.f64(), random.f64()]);
         let radiance = self.light(number, sample.radiance_over_pdf) / probability;
         let (value, pdf) = (vertex.value)(sample.toward);
