@@ -11,7 +11,7 @@ use crate::agreement::{Batches, assert_same_batches, batches_with};
 use crate::rendering::options;
 
 /// Independent films for each choice.
-const BATCHES: u64 = 12;
+const BATCHES: u64 = 10;
 
 fn pictures(scene: &Scene, estimators: Estimators, seed: u64) -> Batches {
     estimators.validate(scene).unwrap_or_else(|reason| panic!("{estimators:?}: {reason}"));
