@@ -224,4 +224,15 @@ pub const CHAPTERS: &[Chapter] = &[
             panel("scene.toml --set light.0.direction=[-0.3,-0.03,0.95]", "setting before us"),
         ],
     ),
+    panels(
+        "19_glass_of_milk",
+        2,
+        &[
+            panel("scene.toml", "whole milk"),
+            panel("scene.toml --set volume.0.preset=Skimmilk", "skimmed milk"),
+        ],
+    ),
+    panels("20_fog_in_a_room", 1, &[panel("scene.toml", "the sun through a window, in fog")]),
+    panels("21_lamps_in_smoke", 1, &[panel("scene.toml", "a bulb and a spot light")]),
+    panels("22_fire_over_a_floor", 1, &[panel("scene.toml", "the flames are the only light")]),
 ];
