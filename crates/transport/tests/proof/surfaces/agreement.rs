@@ -8,8 +8,8 @@ use glam::DVec3;
 use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
 
-use super::{MATERIALS, effort, for_all_integrators};
-use crate::agreement::{assert_same_batches, batches};
+use super::{MATERIALS, assert_same_pictures, effort, for_all_integrators};
+use crate::agreement::batches;
 use crate::scenes::{scene_in, write_random_npy};
 
 /// Independent films of each integrator.
@@ -35,7 +35,7 @@ fn assert_all_agree(name: &str, scene: &Scene) {
     });
     for (other, batches) in [("fast", fast), ("spectral", spectral)] {
         let kinds = [Integrator::Reference, Integrator::Fast];
-        assert_same_batches(&format!("{name}, reference and {other}"), kinds, &[reference.clone(), batches]);
+        assert_same_pictures(&format!("{name}, reference and {other}"), kinds, &[reference.clone(), batches]);
     }
 }
 

@@ -6,8 +6,8 @@ use tyndall_scene::description::Integrator;
 use tyndall_transport::{DistanceSampler, Estimators, RenderOptions, TransmittanceEstimator};
 
 use super::agreement::furnished;
-use super::effort;
-use crate::agreement::{Batches, assert_same_batches, batches_with};
+use super::{assert_same_pictures, effort};
+use crate::agreement::{Batches, batches_with};
 use crate::rendering::options;
 
 /// Independent films for each choice.
@@ -95,7 +95,7 @@ fn equiangular_sampling_of_point_spot_and_area_lamps_makes_the_same_picture() {
             let equiangular =
                 Estimators { distance: Some(DistanceSampler::Equiangular), ..Estimators::default() };
             let pair = [pictures(&scene, Estimators::default(), 81), pictures(&scene, equiangular, 82)];
-            assert_same_batches(&format!("{lamp} in {medium}"), [Integrator::Reference; 2], &pair);
+            assert_same_pictures(&format!("{lamp} in {medium}"), [Integrator::Reference; 2], &pair);
         }
     }
 }
@@ -118,6 +118,6 @@ fn every_unbiased_estimator_makes_the_picture_that_the_default_makes() {
         let estimators = Estimators { distance: Some(distance), transmittance: Some(transmittance) };
         let unusual = pictures(&scene, estimators, 91 + i as u64);
         let name = format!("{} with {}", distance.name(), transmittance.name());
-        assert_same_batches(&name, [Integrator::Reference; 2], &[default.clone(), unusual]);
+        assert_same_pictures(&name, [Integrator::Reference; 2], &[default.clone(), unusual]);
     }
 }

@@ -13,6 +13,7 @@ use glam::DVec3;
 use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
 
+use crate::agreement::{Batches, assert_same_batches};
 use crate::chromatic::chromatic;
 
 /// Factor on the numbers of samples.
@@ -30,6 +31,28 @@ fn for_all_integrators(scene: &Scene, factors: DVec3) -> [(&'static str, Scene, 
         ("fast", scene.clone(), Integrator::Fast),
         ("spectral", spectral, Integrator::Reference),
     ]
+}
+
+/// Fails if any region of any quantity differs significantly, or the mean of any over the whole picture, in which a small
+/// error shows that is hidden in the noise of each region.
+fn assert_same_pictures(name: &str, integrators: [Integrator; 2], pair: &[Batches; 2]) {
+    assert_same_batches(name, integrators, pair);
+    let wholes = [0, 1].map(|i| whole(&pair[i]));
+    assert_same_batches(&format!("{name}, on the whole"), integrators, &wholes);
+}
+
+/// Mean of each quantity over all regions, which stand beside each other.
+fn whole(batches: &Batches) -> Batches {
+    let layer = |name: &str| name.split(" at").next().unwrap_or_default().to_owned();
+    let regions = batches.chunk_by(|(a, _), (b, _)| layer(a) == layer(b));
+    regions
+        .map(|regions| {
+            let (name, first) = &regions[0];
+            let mean =
+                |i: usize| regions.iter().map(|(_, values)| values[i]).sum::<f64>() / regions.len() as f64;
+            (layer(name), (0..first.len()).map(mean).collect())
+        })
+        .collect()
 }
 
 /// Materials that absorb nothing, and two that do.

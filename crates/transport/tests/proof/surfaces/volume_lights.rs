@@ -7,8 +7,8 @@ use tyndall_scene::Light;
 use tyndall_scene::description::Integrator;
 
 use super::agreement::furnished;
-use super::{effort, for_all_integrators};
-use crate::agreement::{assert_same_batches, batches};
+use super::{assert_same_pictures, effort, for_all_integrators};
+use crate::agreement::batches;
 use crate::rendering::render;
 use crate::scenes::{scene, with_next_event};
 use crate::statistics::two_sided_quantile;
@@ -64,7 +64,7 @@ fn light_from_glowing_media_is_the_same_with_and_without_next_event_estimation()
         {
             let with = batches(&scene, kind, 42 + number as u64, 12 * effort());
             let name = format!("{name}, {integrator} with next event against reference without");
-            assert_same_batches(&name, [Integrator::Reference, kind], &[without.clone(), with]);
+            assert_same_pictures(&name, [Integrator::Reference, kind], &[without.clone(), with]);
         }
     }
 }
