@@ -17,6 +17,7 @@ mod properties;
 mod reference;
 mod render;
 mod repeat;
+mod roulette;
 mod shadow_catcher;
 mod spectral;
 mod surface_vertex;

@@ -27,6 +27,7 @@ use crate::emission::weighted_emission_along;
 use crate::equiangular_light::{Found, LitSegment};
 use crate::estimators::{Estimators, SceneFlight};
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
+use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
@@ -92,7 +93,7 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
                     break;
                 }
                 path.throughput *= albedo;
-                if !path.survives_roulette(random) {
+                if !path.survives_roulette(turns, random) {
                     break;
                 }
                 turns += 1;
@@ -141,7 +142,7 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
                 let Some(onward) = surface.sample(random) else { break };
                 path.throughput *= onward.weight.truncate();
                 path.refraction *= onward.radiance_scale;
-                if !path.survives_roulette(random) {
+                if !path.survives_roulette(turns, random) {
                     break;
                 }
                 path.turn = onward.pdf.map(|pdf| Turn { from: surface.position(), pdf, segment: None });
@@ -259,13 +260,10 @@ impl Path<'_> {
     }
 
     /// Ends a weak path with a probability that its survivors' weight makes up for.
-    fn survives_roulette(&mut self, random: &mut Random) -> bool {
+    fn survives_roulette(&mut self, turns: u32, random: &mut Random) -> bool {
         let strength = self.throughput.abs().max_element() / self.refraction;
-        if strength >= ROULETTE_THROUGHPUT {
-            return true;
-        }
-        let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
-        if random.f64() >= probability {
+        let probability = survival(strength, ROULETTE_THROUGHPUT, turns);
+        if probability < 1.0 && random.f64() >= probability {
             return false;
         }
         self.throughput /= probability;

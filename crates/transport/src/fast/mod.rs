@@ -20,6 +20,7 @@ use volume::FastVolume;
 
 use crate::emission::{path_weight, weighted_emission_along};
 use crate::path_layers::FirstMet;
+use crate::roulette::{LONG_PATH, LONG_PATH_SURVIVAL};
 use crate::shadow_catcher;
 use crate::way::Span;
 use glam::{DVec3, Vec3};
@@ -542,10 +543,13 @@ fn choose_direct(
 #[inline(always)]
 fn survives_roulette(path: &mut Path, refraction: f32, random: &mut Random) -> bool {
     let strength = path.throughput.max_element() / refraction;
+    let mut probability = strength / (2.0 * ROULETTE_THROUGHPUT);
     if strength >= ROULETTE_THROUGHPUT {
-        return true;
+        if path.turns < LONG_PATH {
+            return true;
+        }
+        probability = LONG_PATH_SURVIVAL as f32;
     }
-    let probability = strength / (2.0 * ROULETTE_THROUGHPUT);
     if random.f32() >= probability {
         return false;
     }

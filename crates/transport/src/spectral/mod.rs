@@ -49,6 +49,7 @@ use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
 use crate::emission::{emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight};
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
+use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
@@ -168,7 +169,7 @@ impl<'a> SpectralScene<'a> {
                     break;
                 }
                 path.weight *= albedo;
-                if !path.survives_roulette(random) {
+                if !path.survives_roulette(turns, random) {
                     break;
                 }
                 turns += 1;
@@ -227,7 +228,7 @@ impl<'a> SpectralScene<'a> {
             let Some(onward) = surface.sample(random) else { break };
             path.weight *= onward.weight;
             path.refraction *= onward.radiance_scale;
-            if !path.survives_roulette(random) {
+            if !path.survives_roulette(turns, random) {
                 break;
             }
             match onward.pdf {
@@ -488,13 +489,10 @@ impl Path {
 
     /// Ends a weak path with a probability that its survivors' weight makes up for. The weight is the same whichever channel
     /// was the hero, and so roulette changes no ratio of densities.
-    fn survives_roulette(&mut self, random: &mut Random) -> bool {
+    fn survives_roulette(&mut self, turns: u32, random: &mut Random) -> bool {
         let strength = (self.weight * self.densities.relative()).max_element() / self.refraction;
-        if strength >= ROULETTE_WEIGHT {
-            return true;
-        }
-        let probability = strength / (2.0 * ROULETTE_WEIGHT);
-        if random.f64() >= probability {
+        let probability = survival(strength, ROULETTE_WEIGHT, turns);
+        if probability < 1.0 && random.f64() >= probability {
             return false;
         }
         self.weight /= probability;

@@ -162,3 +162,20 @@ fn lights_that_add_up_to_an_even_one_keep_a_white_medium_white() {
         }
     }
 }
+
+#[test]
+fn paths_end_where_nothing_absorbs_and_nothing_leaves() {
+    let endless = scene(
+        "camera = { position = [0, 0, 0], direction = [0, 0, -1] }
+         film = { resolution = [3, 3] }
+         medium = { mu_t = 1, albedo = 1 }
+         [[light]]
+         type = \"constant\"
+         radiance = 1",
+    );
+    let chromatic = crate::chromatic::chromatic(endless.clone(), glam::DVec3::new(1.0, 2.0, 3.0), None);
+    for (scene, integrator) in [(&endless, BOTH[0]), (&endless, BOTH[1]), (&chromatic, BOTH[0])] {
+        let film = render(scene, integrator, 1, 0..1);
+        assert_eq!(film.rejected(), 0);
+    }
+}
