@@ -124,6 +124,7 @@ pub(super) fn lamp_radiance(scene: &Scene, path: &Path, direction: DVec3, hit: &
 }
 
 /// Draws a light for a vertex at `from`, of which `value` gives f or the phase function and the density of the path there.
+#[inline(always)]
 pub(super) fn draw_light(
     scene: &Scene,
     from: DVec3,
