@@ -3,8 +3,8 @@
 use glam::DVec3;
 use tyndall_optics::Spectrum;
 
-use crate::light::{Light, LightTree};
-use crate::surface::{Boundaries, Presence, Surfaces};
+use crate::light::{AreaLight, Light, LightTree};
+use crate::surface::{Boundaries, Hit, Presence, Surfaces};
 use crate::{Camera, Observer, Volume};
 
 /// Everything that transport needs, in world space.
@@ -87,6 +87,15 @@ impl Scene {
         match &self.camera_presence {
             Some(presence) => presence.clone(),
             None => self.boundaries.presence_at(origin, &self.surfaces),
+        }
+    }
+
+    /// The lamp that the surface at `hit` is, and its number among the lights.
+    pub fn lamp(&self, hit: &Hit) -> Option<(usize, &AreaLight)> {
+        let number = self.surfaces.shape(hit).light?;
+        match &self.lights[number] {
+            Light::Area(lamp) => Some((number, lamp)),
+            _ => None,
         }
     }
 

@@ -21,6 +21,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use tyndall_lanes::Random;
+use tyndall_scene::light::VolumeLight;
 use tyndall_scene::{Density, Field, Light, Ray, Scene, Volume};
 use tyndall_volumes::BrickGrid;
 
@@ -124,6 +125,31 @@ fn integral(
         ControlFlow::Continue(())
     });
     sum
+}
+
+/// A point of a glowing volume that next-event estimation has drawn.
+pub(crate) struct Glow {
+    /// Where it is.
+    pub position: DVec3,
+    /// Unit vector there.
+    pub toward: DVec3,
+    /// Its distance.
+    pub distance: f64,
+    /// p_V d²: its density over solid angle times length, 1/(sr length).
+    pub density: f64,
+}
+
+/// Draws a point of `light` as seen from `from`; none where there is no direction to it, or no light.
+pub(crate) fn draw_glow(light: &VolumeLight, from: DVec3, random: &mut Random) -> Option<Glow> {
+    let sample = light.sample([random.f64(), random.f64(), random.f64()]);
+    let offset = sample.position - from;
+    let distance = offset.length();
+    (distance != 0.0 && sample.pdf_volume > 0.0).then(|| Glow {
+        position: sample.position,
+        toward: offset / distance,
+        distance,
+        density: distance * distance * sample.pdf_volume,
+    })
 }
 
 /// The source term of `volume` at a place inside it, for light that travels towards −`toward`: μa·Le and what is given

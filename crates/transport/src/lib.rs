@@ -11,6 +11,7 @@ mod emission;
 mod equiangular_light;
 mod estimators;
 mod fast;
+mod found_light;
 mod measure;
 mod path_layers;
 mod properties;

@@ -23,9 +23,10 @@ use tyndall_lanes::Random;
 use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
-use crate::emission::weighted_emission_along;
+use crate::emission::{Glow, draw_glow, path_weight, source_at, weighted_emission_along};
 use crate::equiangular_light::{Found, LitSegment};
 use crate::estimators::{Estimators, SceneFlight};
+use crate::found_light::{self, Turned};
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::roulette::survival;
 use crate::shadow_catcher;
@@ -65,7 +66,7 @@ pub fn trace_with(scene: &Scene, estimators: Estimators, ray: Ray, random: &mut 
         }
         if flight.escape != 0.0 {
             let arriving = match &way.hit {
-                None => path.escaped_radiance(scene),
+                None => found_light::surroundings(scene, path.ray.direction, path.turned()),
                 Some(hit) => path.lamp_radiance(scene, hit),
             };
             layers.add(scatterings, path.throughput * flight.escape * arriving);
@@ -196,45 +197,23 @@ struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// Lo of the surroundings: radiance of the infinite lights, each weighted against next-event estimation having drawn it.
-    fn escaped_radiance(&self, scene: &Scene) -> DVec3 {
-        let lights = scene.lights.iter().enumerate();
-        lights
-            .map(|(number, light)| {
-                let radiance = light.radiance(self.ray.direction);
-                if radiance == DVec3::ZERO {
-                    return DVec3::ZERO;
-                }
-                radiance * self.weight_against(scene, number, |_| light.pdf(self.ray.direction))
-            })
-            .sum()
+    /// What found light is weighted by.
+    fn turned(&self) -> Turned {
+        self.turn.as_ref().map(|turn| (turn.from, turn.pdf))
     }
 
-    /// Le of a surface that is a lamp, weighted likewise.
+    /// Le of a surface that is a lamp. It competes with light sampled along the path's last stretch as well, if that is
+    /// wanted.
     fn lamp_radiance(&self, scene: &Scene, hit: &Hit) -> DVec3 {
-        let Some(number) = scene.surfaces.shape(hit).light else { return DVec3::ZERO };
-        let Light::Area(lamp) = &scene.lights[number] else { return DVec3::ZERO };
         let direction = self.ray.direction;
-        let radiance = lamp.radiance_from(hit.normal, direction);
-        if let Some(Turn { from, pdf, segment: Some((segment, distance)) }) = &self.turn {
-            let cos = direction.dot(hit.normal).abs();
-            let light_pdf = hit.position.distance_squared(*from) / (cos * lamp.area());
-            let found = Found { light: number, place: hit.position, place_pdf: light_pdf, path_pdf: *pdf };
-            return radiance * segment.path_weight(scene, &found, *distance);
-        }
-        radiance
-            * self.weight_against(scene, number, |from| {
-                lamp.pdf_of_hit(from, direction, hit.position, hit.normal)
-            })
-    }
-
-    /// Balance heuristic: weight of this path against next-event estimation, which draws the same direction from where the
-    /// path turned with the density `pdf` if it draws the light of this number.
-    fn weight_against(&self, scene: &Scene, light: usize, pdf: impl Fn(DVec3) -> f64) -> f64 {
-        match &self.turn {
-            Some(turn) => turn.pdf / (turn.pdf + scene.light_probability(light, turn.from) * pdf(turn.from)),
-            None => 1.0,
-        }
+        let Some(Turn { from, pdf, segment: Some((segment, distance)) }) = &self.turn else {
+            return found_light::lamp(scene, hit, direction, self.turned());
+        };
+        let Some((number, lamp)) = scene.lamp(hit) else { return DVec3::ZERO };
+        let cos = direction.dot(hit.normal).abs();
+        let light_pdf = hit.position.distance_squared(*from) / (cos * lamp.area());
+        let found = Found { light: number, place: hit.position, place_pdf: light_pdf, path_pdf: *pdf };
+        lamp.radiance_from(hit.normal, direction) * segment.path_weight(scene, &found, *distance)
     }
 
     /// Light that volumes send out per length, up to the distance `end`.
@@ -254,7 +233,7 @@ impl Path<'_> {
     /// Weight of the glow of a volume at `position`, found by this path, against next-event estimation.
     fn glow_weight(&self, scene: &Scene, volume: usize, position: DVec3) -> f64 {
         match &self.turn {
-            Some(turn) => crate::emission::path_weight(scene, volume, turn.from, position, turn.pdf),
+            Some(turn) => path_weight(scene, volume, turn.from, position, turn.pdf),
             None => 1.0,
         }
     }
@@ -380,19 +359,15 @@ impl Shadow<'_> {
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec3::ZERO };
-        let sample = light.sample([random.f64(), random.f64(), random.f64()]);
-        let offset = sample.position - vertex.position;
-        let distance = offset.length();
-        if distance == 0.0 || sample.pdf_volume <= 0.0 {
+        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, random)
+        else {
             return DVec3::ZERO;
-        }
+        };
         let volume = light.volume();
-        let toward = offset / distance;
         let (value, path_pdf) = (vertex.value)(toward);
-        let weight = 1.0
-            - crate::emission::path_weight(self.scene, volume, vertex.position, sample.position, path_pdf);
-        let source = crate::emission::source_at(&self.scene.volumes[volume], sample.position, toward);
-        let unshadowed = value * source * (weight / (distance * distance * sample.pdf_volume * probability));
+        let weight = 1.0 - path_weight(self.scene, volume, vertex.position, position, path_pdf);
+        let source = source_at(&self.scene.volumes[volume], position, toward);
+        let unshadowed = value * source * (weight / (density * probability));
         self.shadowed(vertex, unshadowed, toward, distance, random)
     }
 

@@ -5,10 +5,10 @@
 //! one path in a hundred, and what the others carry makes up for it.
 
 /// Turns of a path after which it may end whatever it carries.
-pub(crate) const LONG_PATH: u32 = 1 << 14;
+const LONG_PATH: u32 = 1 << 14;
 
 /// Probability with which a long path goes on.
-pub(crate) const LONG_PATH_SURVIVAL: f64 = 0.99;
+const LONG_PATH_SURVIVAL: f64 = 0.99;
 
 /// Probability with which a path goes on after so many `turns`: in proportion to its `strength`, which survivors double, below
 /// the `threshold`; 1 above it, unless the path is long.

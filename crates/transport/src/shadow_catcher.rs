@@ -12,6 +12,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{Light, Scene};
 
 use crate::estimators::Estimators;
+use crate::found_light::surroundings;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::Way;
 
@@ -43,22 +44,12 @@ pub(crate) fn reflected(
         add([unlit * seen, unlit]);
     }
     if let Some(onward) = vertex.sample(random) {
-        let unlit = onward.weight.truncate() * surroundings(scene, vertex, onward.direction, onward.pdf);
+        let turned = onward.pdf.map(|pdf| (vertex.position(), pdf));
+        let unlit = onward.weight.truncate() * surroundings(scene, onward.direction, turned);
         let seen = transmittance(scene, vertex, presence, onward.direction, f64::INFINITY, random);
         add([unlit * seen, unlit]);
     }
     sums.map(|sum| sum as f32)
-}
-
-/// Light at infinity from a direction that was drawn with the density `pdf`, weighted against next-event estimation.
-fn surroundings(scene: &Scene, vertex: &SurfaceVertex, direction: DVec3, pdf: Option<f64>) -> DVec3 {
-    let lights = scene.lights.iter().enumerate();
-    lights
-        .map(|(number, light)| {
-            let competing = scene.light_probability(number, vertex.position()) * light.pdf(direction);
-            light.radiance(direction) * pdf.map_or(1.0, |pdf| pdf / (pdf + competing))
-        })
-        .sum()
 }
 
 /// What of the light from `toward` gets through; chromatic media count with their mean extinction.

@@ -20,6 +20,13 @@ pub struct Span {
     pub end: f64,
 }
 
+impl Span {
+    /// As many volumes, all of them present up to the distance `end`.
+    pub(crate) fn everywhere(volumes: usize, end: f64) -> Vec<Span> {
+        (0..volumes).map(|volume| Span { volume, start: 0.0, end }).collect()
+    }
+}
+
 /// What a ray meets.
 #[derive(Debug, Clone)]
 pub(crate) struct Way {

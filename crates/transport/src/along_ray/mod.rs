@@ -66,12 +66,7 @@ pub struct AlongRay<'a> {
 impl<'a> AlongRay<'a> {
     /// What `ray`, of unit direction, meets of `volumes` before the distance `end`; `None` if it meets nothing.
     pub fn through(volumes: &'a [Volume], ray: &Ray, end: f64) -> Option<Self> {
-        let mut stretches = volumes
-            .iter()
-            .enumerate()
-            .filter_map(|(source, volume)| Stretch::through(volume, ray, (0.0, end)).map(|s| s.of(source)));
-        let first = stretches.next()?;
-        Some(Self { first, others: stretches.collect(), bounding: Bounding::default(), light: None })
+        Self::through_spans(volumes, &Span::everywhere(volumes.len(), end), ray)
     }
 
     /// What `ray` meets of the volumes where they are present.

@@ -19,14 +19,15 @@ pub(crate) use volume::FastScene;
 use volume::FastVolume;
 
 use crate::emission::{path_weight, weighted_emission_along};
+use crate::found_light;
 use crate::path_layers::FirstMet;
-use crate::roulette::{LONG_PATH, LONG_PATH_SURVIVAL};
+use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::way::Span;
 use glam::{DVec3, Vec3};
 use march::List;
 use pool::{POOL, Path, Pixel, Rays};
-use sided::{Direct, Sided, draw_light, lamp_radiance};
+use sided::{Direct, Sided, draw_light};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
@@ -317,8 +318,7 @@ impl<'a> Engine<'a> {
         let spans = if self.scene.is_sided {
             self.sided[slot].spans(false)
         } else {
-            let volumes = 0..self.scene.volumes.len();
-            everywhere = volumes.map(|volume| Span { volume, start: 0.0, end: f64::INFINITY }).collect();
+            everywhere = Span::everywhere(self.scene.volumes.len(), f64::INFINITY);
             &everywhere
         };
         for span in spans.iter().filter(|span| span.start < end) {
@@ -394,7 +394,8 @@ impl<'a> Engine<'a> {
         let sided = &mut self.sided[slot];
         let path = &mut self.paths[slot];
         let random = &mut self.rays.random[slot];
-        path.add_in_scattered(path.throughput * lamp_radiance(scene, path, sided.ray.direction, &hit));
+        let lamp = found_light::lamp(scene, &hit, sided.ray.direction, path.turned()).as_vec3();
+        path.add_in_scattered(path.throughput * lamp);
 
         let vertex = sided.vertex(scene, &hit);
         if path.turns == 0 {
@@ -467,19 +468,7 @@ impl<'a> Engine<'a> {
         let path = &mut self.paths[slot];
         let scene = self.scene.scene;
         let direction = path.direction.as_dvec3().normalize();
-        let mut radiance = Vec3::ZERO;
-        for (number, light) in scene.lights.iter().enumerate() {
-            let arriving = light.radiance(direction);
-            if arriving == DVec3::ZERO {
-                continue;
-            }
-            let mut weight = 1.0;
-            if let Some(from) = path.turned {
-                let turn_pdf = f64::from(path.turn_pdf);
-                weight = turn_pdf / (turn_pdf + scene.light_probability(number, from) * light.pdf(direction));
-            }
-            radiance += (arriving * weight).as_vec3();
-        }
+        let radiance = found_light::surroundings(scene, direction, path.turned()).as_vec3();
         path.add_in_scattered(path.throughput * radiance);
         Next::Record
     }
@@ -500,8 +489,8 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// Draws a light for the place `from`, and what it would bring by the next event; its direction and distance, or `None` if there is nothing to
-/// trace or roulette, played on the contribution before the shadow ray is paid for, ended it.
+/// Draws a light for the place `from`, and what it would bring by the next event; its direction and distance, or `None`
+/// if there is nothing to trace or roulette, played on the contribution before the shadow ray is paid for, ended it.
 #[inline(always)]
 fn choose_direct(
     scene: &Scene,
@@ -543,14 +532,8 @@ fn choose_direct(
 #[inline(always)]
 fn survives_roulette(path: &mut Path, refraction: f32, random: &mut Random) -> bool {
     let strength = path.throughput.max_element() / refraction;
-    let mut probability = strength / (2.0 * ROULETTE_THROUGHPUT);
-    if strength >= ROULETTE_THROUGHPUT {
-        if path.turns < LONG_PATH {
-            return true;
-        }
-        probability = LONG_PATH_SURVIVAL as f32;
-    }
-    if random.f32() >= probability {
+    let probability = survival(f64::from(strength), f64::from(ROULETTE_THROUGHPUT), path.turns) as f32;
+    if probability < 1.0 && random.f32() >= probability {
         return false;
     }
     path.throughput /= probability;

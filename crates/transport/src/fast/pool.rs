@@ -7,6 +7,7 @@
 use glam::{DVec3, Vec3};
 use tyndall_lanes::Random;
 
+use crate::found_light::Turned;
 use crate::path_layers::FirstMet;
 
 /// Paths in flight on a thread: enough that the loads of some hide behind the work of others.
@@ -117,6 +118,12 @@ pub(super) struct Path {
 }
 
 impl Path {
+    /// What light that the path finds is weighted by.
+    #[inline(always)]
+    pub fn turned(&self) -> Turned {
+        self.turned.map(|from| (from, f64::from(self.turn_pdf)))
+    }
+
     /// Adds light that was scattered as often as the path has been.
     #[inline(always)]
     pub fn add_in_scattered(&mut self, radiance: Vec3) {

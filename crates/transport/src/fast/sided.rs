@@ -8,12 +8,11 @@ use tyndall_lanes::Random;
 use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
-use super::pool::Path;
-use crate::emission::path_weight;
+use crate::emission::{Glow, draw_glow, path_weight, source_at};
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, Way};
 
-/// What a path knows beside its place in the pool, in scenes with surfaces or volumes that glow.
+/// What a path knows beside its place in the pool, in scenes with surfaces.
 #[derive(Debug, Clone)]
 pub(super) struct Sided {
     /// The path's own ray.
@@ -107,22 +106,6 @@ impl Sided {
     }
 }
 
-/// Le of the lamp that a path hits, weighted against next-event estimation.
-pub(super) fn lamp_radiance(scene: &Scene, path: &Path, direction: DVec3, hit: &Hit) -> Vec3 {
-    let Some(number) = scene.surfaces.shape(hit).light else { return Vec3::ZERO };
-    let Light::Area(lamp) = &scene.lights[number] else { return Vec3::ZERO };
-    let radiance = lamp.radiance_from(hit.normal, direction);
-    let weight = match path.turned {
-        Some(from) => {
-            let light_pdf = lamp.pdf_of_hit(from, direction, hit.position, hit.normal);
-            let turn_pdf = f64::from(path.turn_pdf);
-            turn_pdf / (turn_pdf + scene.light_probability(number, from) * light_pdf)
-        }
-        None => 1.0,
-    };
-    (radiance * weight).as_vec3()
-}
-
 /// Draws a light for a vertex at `from`, of which `value` gives f or the phase function and the density of the path there.
 #[inline(always)]
 pub(super) fn draw_light(
@@ -134,18 +117,11 @@ pub(super) fn draw_light(
     let (number, probability) = scene.choose_light(from, random.f64())?;
     let light = &scene.lights[number];
     if let Light::Volume(glow) = light {
-        let sample = glow.sample([random.f64(), random.f64(), random.f64()]);
-        let offset = sample.position - from;
-        let distance = offset.length();
-        if distance == 0.0 || sample.pdf_volume <= 0.0 {
-            return None;
-        }
-        let toward = offset / distance;
+        let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
         let (value, path_pdf) = value(toward);
-        let weight = 1.0 - path_weight(scene, glow.volume(), from, sample.position, path_pdf);
-        let source = crate::emission::source_at(&scene.volumes[glow.volume()], sample.position, toward);
-        let density = distance * distance * sample.pdf_volume * probability;
-        let arriving = source / density;
+        let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
+        let source = source_at(&scene.volumes[glow.volume()], position, toward);
+        let arriving = source / (density * probability);
         let unshadowed = (value * arriving * weight).as_vec3();
         return Some(Direct { unshadowed, arriving: arriving.as_vec3(), is_glow: true, toward, distance });
     }

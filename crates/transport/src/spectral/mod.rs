@@ -47,7 +47,9 @@ use tyndall_optics::{cie, uplift};
 use tyndall_scene::surface::Presence;
 use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
-use crate::emission::{emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight};
+use crate::emission::{
+    Glow, draw_glow, emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight,
+};
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::roulette::survival;
 use crate::shadow_catcher;
@@ -307,8 +309,7 @@ impl<'a> SpectralScene<'a> {
 
     /// Le of a surface that is a lamp, weighted likewise.
     fn lamp_radiance(&self, path: &Path, hit: &Hit) -> DVec4 {
-        let Some(number) = self.scene.surfaces.shape(hit).light else { return DVec4::ZERO };
-        let Light::Area(lamp) = &self.scene.lights[number] else { return DVec4::ZERO };
+        let Some((number, lamp)) = self.scene.lamp(hit) else { return DVec4::ZERO };
         let direction = path.ray.direction;
         let weight = path.weight_against(self.scene, number, |from| {
             lamp.pdf_of_hit(from, direction, hit.position, hit.normal)
@@ -377,26 +378,21 @@ impl<'a> SpectralScene<'a> {
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec4::ZERO };
-        let sample = light.sample([random.f64(), random.f64(), random.f64()]);
-        let offset = sample.position - vertex.position;
-        let distance = offset.length();
-        if distance == 0.0 || sample.pdf_volume <= 0.0 {
+        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, random)
+        else {
             return DVec4::ZERO;
-        }
-        let toward = offset / distance;
+        };
         let (value, pdf) = (vertex.value)(toward);
-        let source = self.source_at(light.volume(), sample.position, toward);
+        let source = self.source_at(light.volume(), position, toward);
         if path.densities.relative() * value * source == DVec4::ZERO {
             return DVec4::ZERO;
         }
         let mean_pdf = mean(&self.channels, pdf);
-        let weight =
-            1.0 - path_weight(self.scene, light.volume(), vertex.position, sample.position, mean_pdf);
+        let weight = 1.0 - path_weight(self.scene, light.volume(), vertex.position, position, mean_pdf);
         let Some(shadow) = self.shadow(vertex, toward, distance, path.hero, random) else {
             return DVec4::ZERO;
         };
-        let density = distance * distance * sample.pdf_volume * probability;
-        source * path.densities.connect(value, pdf, &shadow, None) * (weight / density)
+        source * path.densities.connect(value, pdf, &shadow, None) * (weight / (density * probability))
     }
 
     /// The source term of a volume at a place, μa·Le and what is given per length.

@@ -1,24 +1,16 @@
 //! A smooth face between air and a layer of refractive index n: how much light it reflects, and where the rest goes.
 //!
-//!   r_s = (n₁ cos θ₁ − n₂ cos θ₂)/(n₁ cos θ₁ + n₂ cos θ₂),   r_p = (n₂ cos θ₁ − n₁ cos θ₂)/(n₂ cos θ₁ + n₁ cos θ₂),
-//!   F = (r_s² + r_p²)/2,   n₁ sin θ₁ = n₂ sin θ₂
+//!   n₁ sin θ₁ = n₂ sin θ₂
 //!
 //! The light is taken as unpolarised at every bounce. Source: Born & Wolf 1999, "Principles of optics", section 1.5.2.
 
 use glam::DVec3;
+use tyndall_optics::bsdf::fresnel;
 
 /// Reflectance of a face for light that meets it under the cosine `cos` to its normal, going from the index `n1` into
 /// `n2`; and the cosine on the other side, 0 where the reflection is total.
 pub fn reflectance(cos: f64, n1: f64, n2: f64) -> (f64, f64) {
-    let ratio = n1 / n2;
-    let sin_squared = ratio * ratio * (1.0 - cos * cos);
-    if sin_squared >= 1.0 {
-        return (1.0, 0.0);
-    }
-    let beyond = (1.0 - sin_squared).sqrt();
-    let across = (n1 * cos - n2 * beyond) / (n1 * cos + n2 * beyond);
-    let along = (n2 * cos - n1 * beyond) / (n2 * cos + n1 * beyond);
-    (0.5 * (across * across + along * along), beyond)
+    fresnel::dielectric(cos, n2 / n1)
 }
 
 /// The direction behind a horizontal face, where it makes the cosine `beyond` with the vertical; `ratio` is n₁/n₂.
