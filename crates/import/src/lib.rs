@@ -6,6 +6,7 @@
 
 #![forbid(unsafe_code)]
 
+mod affine;
 mod error;
 mod mesh;
 pub mod mitsuba;

@@ -15,6 +15,7 @@ use tyndall_scene::description::{
 
 use super::transform::{Transform, plain};
 use crate::Notes;
+use crate::affine::{keeps_axes, map_box};
 
 /// The volumes of one medium.
 #[derive(Debug, Clone)]
@@ -118,11 +119,10 @@ fn cut(description: &mut SceneDescription, medium: &MediumVolumes, extent: &Exte
     let [min, max] = extent.support;
     let to_cube = extent.to_world.inverse() * to_world(shape);
     let kept = if let Some(cuboid) = shape.cuboid.filter(|_| keeps_axes(&to_cube)) {
-        let corners = [cuboid.min, cuboid.max].map(|corner| to_cube.transform_point3(corner.into()));
+        let corners = map_box(&to_cube, [cuboid.min, cuboid.max].map(DVec3::from_array));
         // Faces that coincide but for rounding do.
         let snap = |x: f64| if (x - x.round()).abs() < 1e-7 { x.round() } else { x };
-        let [low, high] = [corners[0].min(corners[1]), corners[0].max(corners[1])]
-            .map(|corner| DVec3::from_array(corner.to_array().map(snap)));
+        let [low, high] = corners.map(|corner| DVec3::from_array(corner.to_array().map(snap)));
         [low.max(DVec3::ZERO), high.min(DVec3::ONE)]
     } else if let Some(sphere) = &shape.sphere {
         let to_shape = to_cube.inverse();
@@ -158,8 +158,7 @@ fn cut(description: &mut SceneDescription, medium: &MediumVolumes, extent: &Exte
     } else {
         let (cuboid, transform) = match keeps_axes(&extent.to_world) {
             true => {
-                let ends = kept.map(|corner| extent.to_world.transform_point3(corner));
-                let [min, max] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                let [min, max] = map_box(&extent.to_world, kept);
                 (BoxShape { min: min.to_array().map(plain), max: max.to_array().map(plain) }, None)
             }
             false => (corners, Transform::describe(&extent.to_world)),
@@ -200,7 +199,7 @@ fn remove(description: &mut SceneDescription, shape: usize) {
 /// The camera is not told to be in volumes that no shape bounds.
 fn leave(description: &mut SceneDescription, medium: &MediumVolumes) {
     let inside = names(&description.camera.inside).filter(|name| !medium.names.contains(name)).cloned();
-    description.camera.inside = some_names(inside.collect());
+    description.camera.inside = Names::some(inside.collect());
 }
 
 fn is_one_of(volume: &VolumeDescription, medium: &MediumVolumes) -> bool {
@@ -216,14 +215,6 @@ fn is_null(description: &SceneDescription, material: &Option<MaterialChoice>) ->
         }
         None => false,
     }
-}
-
-/// Whether a map takes each axis to an axis.
-fn keeps_axes(map: &DAffine3) -> bool {
-    [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis].into_iter().all(|column| {
-        let greatest = column.abs().max_element();
-        column.abs().element_sum() - greatest <= 1e-9 * greatest
-    })
 }
 
 /// Lets the medium that is inside no shape fill the scene.
@@ -259,22 +250,13 @@ fn fill_the_scene(description: &mut SceneDescription, path: &Path, notes: &mut N
             for name in exterior.iter_mut().filter(|name| **name == filling) {
                 *name = "medium".into();
             }
-            shape.exterior = some_names(exterior);
+            shape.exterior = Names::some(exterior);
         }
     }
     let inside = names(&description.camera.inside).filter(|name| bounded.contains(name)).cloned();
-    description.camera.inside = some_names(inside.collect());
+    description.camera.inside = Names::some(inside.collect());
 }
 
 fn names(names: &Option<Names>) -> impl Iterator<Item = &String> {
     names.iter().flat_map(|names| names.all())
-}
-
-/// One name, several, or none.
-pub(super) fn some_names(mut names: Vec<String>) -> Option<Names> {
-    match names.len() {
-        0 => None,
-        1 => names.pop().map(Names::One),
-        _ => Some(Names::Several(names)),
-    }
 }

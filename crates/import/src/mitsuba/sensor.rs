@@ -5,9 +5,8 @@
 //! otherwise. An orthographic film is 2 units wide, times the scale of `to_world`. Paths of `max_depth` n have n − 1
 //! scatterings.
 
-use tyndall_scene::description::{CameraDescription, Projection};
+use tyndall_scene::description::{CameraDescription, Names, Projection};
 
-use super::boundaries::some_names;
 use super::importer::Importer;
 use super::object::{Class, Object};
 use super::transform::{LookAt, plain};
@@ -94,7 +93,7 @@ impl<'a> Importer<'a> {
             object.ignore(&["focus_distance"]);
         }
         if let Some(medium) = self.child(object, Class::Medium) {
-            camera.inside = some_names(self.medium(medium)?);
+            camera.inside = Names::some(self.medium(medium)?);
         }
         self.tell_unused(object);
         Ok(camera)

@@ -9,18 +9,18 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use tyndall_scene::description::{
-    BoxShape, CylinderShape, DiscShape, MaterialChoice, MaterialDescription, MeshShape, RectangleShape,
-    ShapeDescription, SphereShape, SurfaceEmission, TransformDescription,
+    BoxShape, CylinderShape, DiscShape, MaterialChoice, MaterialDescription, MeshShape, Names,
+    RectangleShape, ShapeDescription, SphereShape, SurfaceEmission, TransformDescription,
 };
 
-use super::boundaries::some_names;
 use super::importer::Importer;
 use super::material::Use;
 use super::object::{Class, Object};
 use super::smooth::with_normals;
 use super::spectrum::Role;
-use super::transform::{GREATEST, Transform, plain, similarity};
+use super::transform::{GREATEST, Transform, plain};
 use crate::ImportError;
+use crate::affine::uniform_scale;
 
 /// Greatest number of shapes, all instances counted.
 const INSTANCES: usize = 1 << 22;
@@ -230,13 +230,9 @@ impl<'a> Importer<'a> {
         Ok(MaterialChoice::Here(Box::new(MaterialDescription::Diffuse { reflectance: 0.5.into() })))
     }
 
-    fn bounded(
-        &mut self,
-        object: &'a Object,
-        side: &str,
-    ) -> Result<Option<tyndall_scene::description::Names>, ImportError> {
+    fn bounded(&mut self, object: &'a Object, side: &str) -> Result<Option<Names>, ImportError> {
         match self.named_child(object, side, Class::Medium) {
-            Some(medium) => Ok(some_names(self.medium(medium)?)),
+            Some(medium) => Ok(Names::some(self.medium(medium)?)),
             None => Ok(None),
         }
     }
@@ -279,7 +275,7 @@ fn is_degenerate(shape: &ShapeDescription, map: &DAffine3) -> bool {
 fn sphere(shape: &mut ShapeDescription, object: &Object, map: &DAffine3) -> Result<(), ImportError> {
     let center = DVec3::from_array(object.vector("center")?.unwrap_or_default());
     let radius = radius(object)?;
-    let similar = similarity(map);
+    let similar = uniform_scale(map);
     let (center, radius) = match similar {
         Some(scale) => (map.transform_point3(center), radius * scale),
         None => (center, radius),
@@ -305,7 +301,7 @@ fn cylinder(shape: &mut ShapeDescription, object: &Object, map: &DAffine3) -> Re
     if from == to {
         return Err(object.place.error("the cylinder has no length: `p0` and `p1` must differ"));
     }
-    let similar = similarity(map);
+    let similar = uniform_scale(map);
     let place = if similar.is_some() { *map } else { DAffine3::IDENTITY };
     let [from, to] = [from, to].map(|point| place.transform_point3(point).to_array().map(plain));
     shape.cylinder = Some(CylinderShape { from, to, radius: radius * similar.unwrap_or(1.0), capped: false });

@@ -80,16 +80,6 @@ pub(super) fn plain(value: f64) -> f64 {
     value + 0.0
 }
 
-/// The factor by which a map scales all lengths, if it keeps angles.
-pub(super) fn similarity(map: &DAffine3) -> Option<f64> {
-    let m = map.matrix3;
-    let scale = m.x_axis.length();
-    let gram = m.transpose() * m;
-    let off = gram - DMat3::from_diagonal(DVec3::splat(scale * scale));
-    let is_similar = off.to_cols_array().iter().all(|entry| entry.abs() <= 1e-9 * scale * scale);
-    (scale > 0.0 && is_similar).then_some(scale)
-}
-
 fn is_uniform_scale(map: &DAffine3) -> bool {
     let scale = map.matrix3.x_axis.x;
     scale > 0.0 && *map == DAffine3::from_scale(DVec3::splat(scale))

@@ -18,7 +18,7 @@ use super::place::Place;
 use super::shapes::Body;
 use super::transforms;
 use super::world::{CameraUse, World};
-use crate::ImportError;
+use crate::{ImportError, affine};
 
 /// A surface between two media.
 #[derive(Debug)]
@@ -168,7 +168,7 @@ impl Builder<'_> {
                     Body::Box(corners) => {
                         (volume.cuboid, volume.transform) = box_at(corners, &boundary.to_world)
                     }
-                    Body::Sphere(radius) => match transforms::uniform_scale(&boundary.to_world) {
+                    Body::Sphere(radius) => match affine::uniform_scale(&boundary.to_world) {
                         Some(scale) => {
                             let center = boundary.to_world.translation.to_array();
                             volume.sphere = Some(SphereShape { center, radius: radius * scale });
@@ -188,8 +188,8 @@ impl Builder<'_> {
                 let names = self.push(name, volumes);
                 let edge = bounds.unwrap_or(media::EVERYWHERE);
                 match boundary.body {
-                    Body::Box(corners) if transforms::keeps_axes(&to_medium) => {
-                        let [min, max] = transforms::map_box(&to_medium, corners);
+                    Body::Box(corners) if affine::keeps_axes(&to_medium) => {
+                        let [min, max] = affine::map_box(&to_medium, corners);
                         let kept = [min.max(edge[0]), max.min(edge[1])];
                         if holds(kept, support) {
                             self.shapes[boundary.shape] = None;
@@ -232,7 +232,7 @@ impl Builder<'_> {
             cuboid,
             transform,
             material: Some(here(tyndall_scene::description::MaterialDescription::Null)),
-            interior: Some(several(names)),
+            interior: Names::some(names.to_vec()),
             ..ShapeDescription::default()
         });
     }
@@ -306,14 +306,7 @@ impl Builder<'_> {
         else {
             return;
         };
-        *side(shape) = Some(several(names));
-    }
-}
-
-fn several(names: &[String]) -> Names {
-    match names {
-        [name] => Names::One(name.clone()),
-        names => Names::Several(names.to_vec()),
+        *side(shape) = Names::some(names.to_vec());
     }
 }
 
@@ -326,8 +319,8 @@ fn box_at(
     corners: Corners,
     to_world: &DAffine3,
 ) -> (Option<BoxShape>, Option<tyndall_scene::description::TransformDescription>) {
-    let keeps_axes = transforms::keeps_axes(to_world);
-    let [min, max] = if keeps_axes { transforms::map_box(to_world, corners) } else { corners };
+    let keeps_axes = affine::keeps_axes(to_world);
+    let [min, max] = if keeps_axes { affine::map_box(to_world, corners) } else { corners };
     let transform = if keeps_axes { None } else { transforms::description(to_world) };
     (Some(BoxShape { min: min.to_array(), max: max.to_array() }), transform)
 }

@@ -23,7 +23,7 @@ use super::parameters::Parameters;
 use super::spectra;
 use super::transforms;
 use super::world::Medium;
-use crate::ImportError;
+use crate::{ImportError, affine};
 
 /// A box by its corners.
 pub(super) type Corners = [DVec3; 2];
@@ -320,7 +320,7 @@ pub(super) fn emission_grid(file: String) -> EmissionGridDescription {
 fn support(grid: &Grid) -> Corners {
     let GridValues::Float(tree) = &grid.values else { return EVERYWHERE };
     let Some([least, greatest]) = index_support(tree) else { return EVERYWHERE };
-    transforms::map_box(&grid.index_to_world, [least - DVec3::ONE, greatest + DVec3::ONE])
+    affine::map_box(&grid.index_to_world, [least - DVec3::ONE, greatest + DVec3::ONE])
 }
 
 /// Least and greatest index coordinates of voxels that are not 0; `None` if these are without end.

@@ -16,7 +16,7 @@ use tyndall_scene::description::{
 use super::context::{Context, text_of};
 use super::transforms;
 use super::world::Shape;
-use crate::{ImportError, Mesh};
+use crate::{ImportError, Mesh, affine};
 
 /// Meshes of more vertices are put into files.
 const MOST_INLINE: usize = 64;
@@ -184,7 +184,7 @@ fn sphere(shape: &Shape, context: &Context) -> Result<Geometry, ImportError> {
     if low > -radius || high < radius || parameters.float_or("phimax", 360.0)? < 360.0 {
         context.unsupported(place, "a part of a sphere is the whole sphere");
     }
-    let scale = transforms::uniform_scale(&shape.to_world);
+    let scale = affine::uniform_scale(&shape.to_world);
     let mut description = ShapeDescription::default();
     match scale {
         Some(scale) => {
@@ -216,7 +216,7 @@ fn disc(shape: &Shape, context: &Context) -> Result<Geometry, ImportError> {
         radius,
         inner_radius,
     };
-    let scale = transforms::uniform_scale(&shape.to_world);
+    let scale = affine::uniform_scale(&shape.to_world);
     let area = scale.map(|scale| (PI * (radius * radius - inner_radius * inner_radius) * scale * scale, 1));
     let transform = transforms::description(&shape.to_world);
     let description = ShapeDescription { disc: Some(disc), transform, ..ShapeDescription::default() };
@@ -234,7 +234,7 @@ fn cylinder(shape: &Shape, context: &Context) -> Result<Geometry, ImportError> {
         context.unsupported(place, "a part of a cylinder is the whole cylinder");
     }
     let cylinder = CylinderShape { from: [0.0, 0.0, low], to: [0.0, 0.0, high], radius, capped: false };
-    let scale = transforms::uniform_scale(&shape.to_world);
+    let scale = affine::uniform_scale(&shape.to_world);
     let area = scale.map(|scale| (2.0 * PI * radius * (high - low) * scale * scale, 1));
     let transform = transforms::description(&shape.to_world);
     let description = ShapeDescription { cylinder: Some(cylinder), transform, ..ShapeDescription::default() };

@@ -79,6 +79,15 @@ pub enum Names {
 }
 
 impl Names {
+    /// These names, if there are any.
+    pub fn some(mut names: Vec<String>) -> Option<Self> {
+        match names.len() {
+            0 => None,
+            1 => names.pop().map(Self::One),
+            _ => Some(Self::Several(names)),
+        }
+    }
+
     /// The names.
     pub fn all(&self) -> &[String] {
         match self {
