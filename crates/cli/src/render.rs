@@ -14,7 +14,7 @@ use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
 use tyndall_scene::description::{FilmDescription, Integrator, Layer, SceneDescription};
 use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
-use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
+use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer};
 
 use crate::Done;
 use crate::imported::ImportArgs;
@@ -289,7 +289,7 @@ fn layers(description: &SceneDescription) -> Layers {
 /// Renders pass after pass, each for all observers, until the plan is fulfilled or Ctrl-C is pressed.
 fn render(
     args: &Args,
-    mut scene: Scene,
+    scene: Scene,
     observers: &[Observer],
     description: &SceneDescription,
     plan: &Plan,
@@ -306,14 +306,17 @@ fn render(
     };
     let [width, height] = scene.resolution.map(u64::from);
     let pixels = width * height * observers.len() as u64;
+    let scenes: Vec<Scene> =
+        observers.iter().map(|observer| Scene { observer: *observer, ..scene.clone() }).collect();
+    let renderers: Vec<Renderer<'_>> =
+        scenes.iter().map(|scene| Renderer::new(scene, options.integrator)).collect();
     let mut clock = stop::Clock::start(pictures[0].metadata.seconds);
     let progress = Progress::start(args.progress, pixels, plan.spp(), Arc::clone(&control));
     let mut end = Done::All;
     'passes: while let Some(pass) = plan.next_pass(pictures, &clock) {
-        for (picture, observer) in pictures.iter_mut().zip(observers) {
-            scene.observer = *observer;
+        for (picture, renderer) in pictures.iter_mut().zip(&renderers) {
             picture.film.open_range(pass.start).into_diagnostic()?;
-            let outcome = render_pass(&scene, &mut picture.film, pass.end, &options, &control);
+            let outcome = renderer.render_pass(&mut picture.film, pass.end, &options, &control);
             picture.metadata.seconds = clock.seconds();
             if outcome == Outcome::Cancelled {
                 end = Done::Interrupted;

@@ -33,7 +33,7 @@ pub use estimators::Estimators;
 pub use measure::{Measurement, measure};
 pub use properties::{MajorantUse, Need, Properties, Reason};
 pub use reference::{trace, trace_with};
-pub use render::{Control, Outcome, RenderOptions, render_pass};
+pub use render::{Control, Outcome, RenderOptions, Renderer, render_pass};
 pub use repeat::{Repeated, repeat_distance, repeat_transmittance};
 pub use spectral::{SpectralIntegrator, SpectralScene};
 pub use transmittance::{TransmittanceEstimator, estimate_transmittance};

@@ -49,7 +49,13 @@ pub enum Outcome {
 /// Tiles along each edge of a block: 64×64 pixels, enough work to keep a pool full.
 const BLOCK_TILES: u32 = 4;
 
-/// Renders the samples that the film's open pass lacks before sample number `end`.
+/// A scene made ready for an integrator, for as many passes as are wanted.
+pub struct Renderer<'a> {
+    scene: &'a Scene,
+    engine: Engine<'a>,
+}
+
+/// Renders the samples that the film's open pass lacks before sample number `end`, with a [`Renderer`] for this pass alone.
 ///
 /// # Panics
 /// If the film has no open pass (see [`Film::open_range`]).
@@ -60,45 +66,69 @@ pub fn render_pass(
     options: &RenderOptions,
     control: &Control,
 ) -> Outcome {
-    let blocks = blocks(film);
-    let engine = Engine::new(scene, options.integrator);
-    let next_block = AtomicUsize::new(0);
-    let film = Mutex::new(film);
-    let work = || {
-        while let Some(block) = blocks.get(next_block.fetch_add(1, Ordering::Relaxed)) {
-            let mut tiles = open_tiles(&lock(&film), block, end);
-            let (seed, cancel) = (options.seed, &control.cancel);
-            let complete = match &engine {
-                Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
-                Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
-                    reference::trace_with(scene, options.estimators, ray, random)
-                }),
-                Engine::Spectral(spectral) => {
-                    trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| spectral.trace(ray, random))
+    Renderer::new(scene, options.integrator).render_pass(film, end, options, control)
+}
+
+impl<'a> Renderer<'a> {
+    /// Prepares a scene for the integrator; a [spectral](Scene::is_spectral) scene has the spectral one, whichever is asked for.
+    pub fn new(scene: &'a Scene, integrator: Integrator) -> Self {
+        Self { scene, engine: Engine::new(scene, integrator) }
+    }
+
+    /// Renders the samples that the film's open pass lacks before sample number `end`. The integrator is that of
+    /// [`new`](Self::new), whatever the options say.
+    ///
+    /// # Panics
+    /// If the film has no open pass (see [`Film::open_range`]).
+    pub fn render_pass(
+        &self,
+        film: &mut Film,
+        end: u64,
+        options: &RenderOptions,
+        control: &Control,
+    ) -> Outcome {
+        let scene = self.scene;
+        let blocks = blocks(film);
+        let next_block = AtomicUsize::new(0);
+        let film = Mutex::new(film);
+        let work = || {
+            while let Some(block) = blocks.get(next_block.fetch_add(1, Ordering::Relaxed)) {
+                let mut tiles = open_tiles(&lock(&film), block, end);
+                let (seed, cancel) = (options.seed, &control.cancel);
+                let complete = match &self.engine {
+                    Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
+                    Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                        reference::trace_with(scene, options.estimators, ray, random)
+                    }),
+                    Engine::Spectral(spectral) => {
+                        trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                            spectral.trace(ray, random)
+                        })
+                    }
+                };
+                if !complete {
+                    return;
                 }
-            };
-            if !complete {
-                return;
+                let mut film = lock(&film);
+                for tile in &tiles {
+                    film.merge_tile(tile);
+                    control.samples.fetch_add(sample_count(tile), Ordering::Relaxed);
+                }
             }
-            let mut film = lock(&film);
-            for tile in &tiles {
-                film.merge_tile(tile);
-                control.samples.fetch_add(sample_count(tile), Ordering::Relaxed);
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..options.threads.max(1) {
+                scope.spawn(work);
             }
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..options.threads.max(1) {
-            scope.spawn(work);
-        }
-        work();
-    });
-    if control.cancel.load(Ordering::Relaxed) { Outcome::Cancelled } else { Outcome::Complete }
+            work();
+        });
+        if control.cancel.load(Ordering::Relaxed) { Outcome::Cancelled } else { Outcome::Complete }
+    }
 }
 
 /// The integrator that renders a scene, and the scene as it wants it.
 enum Engine<'a> {
-    Fast(FastScene<'a>),
+    Fast(Box<FastScene<'a>>),
     Reference,
     Spectral(Box<SpectralIntegrator<'a>>),
 }
@@ -107,7 +137,7 @@ impl<'a> Engine<'a> {
     fn new(scene: &'a Scene, integrator: Integrator) -> Self {
         match integrator {
             _ if scene.is_spectral() => Self::Spectral(Box::new(SpectralIntegrator::new(scene))),
-            Integrator::Fast => Self::Fast(FastScene::new(scene)),
+            Integrator::Fast => Self::Fast(Box::new(FastScene::new(scene))),
             Integrator::Reference => Self::Reference,
         }
     }

@@ -65,6 +65,11 @@ impl SurfaceVertex {
         self.bsdf.is_delta()
     }
 
+    /// Whether the surface scatters evenly, to its side and without mirrors.
+    pub fn is_matt(&self) -> bool {
+        matches!(self.bsdf, Bsdf::Diffuse { .. })
+    }
+
     /// f |cos θ| towards `direction` in each channel, without mirrors.
     pub fn value(&self, direction: DVec3) -> DVec4 {
         if self.is_two_faced(direction) {

@@ -17,6 +17,11 @@ impl DistantLight {
         Self { toward: -direction.normalize_or(DVec3::NEG_Y), irradiance }
     }
 
+    /// Unit vector to where the light comes from.
+    pub fn toward(&self) -> DVec3 {
+        self.toward
+    }
+
     pub(super) fn sample(&self) -> LightSample {
         LightSample {
             toward: self.toward,

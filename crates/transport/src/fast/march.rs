@@ -9,7 +9,7 @@
 
 use super::pool::{POOL, Rays};
 use super::volume::{FastGrid, FastVolume, Kind};
-use tyndall_volumes::bricks::Bricks;
+use glam::Vec3;
 
 /// Rays in a group of vector arithmetic: two AVX2 registers of f32.
 const WIDTH: usize = 16;
@@ -150,22 +150,13 @@ pub(super) fn collide(rays: &mut Rays, volumes: &[FastVolume], tentative: &List,
     happened.clear();
     for &slot in tentative.slots() {
         let i = usize::from(slot) % POOL;
-        let Kind::Grid(FastGrid { grid, spread, .. }) = &volumes[rays.volume[i] as usize].kind else {
+        let Kind::Grid(grid) = &volumes[rays.volume[i] as usize].kind else {
             continue;
         };
-        let [ux, uy, uz] = rays.random[i].f32x3();
         let t = rays.t[i];
-        let voxel = [
-            (rays.ox[i] + t * rays.dx[i] + spread * ux) as i32 as u32,
-            (rays.oy[i] + t * rays.dy[i] + spread * uy) as i32 as u32,
-            (rays.oz[i] + t * rays.dz[i] + spread * uz) as i32 as u32,
-        ];
-        let density = match grid.bricks() {
-            Bricks::U8(bricks) => grid.local_voxel(bricks, voxel),
-            Bricks::F16(bricks) => grid.local_voxel(bricks, voxel),
-            Bricks::F32(bricks) => grid.local_voxel(bricks, voxel),
-        };
-        let density = if density > 0.0 { density } else { 0.0 };
+        let place =
+            Vec3::new(rays.ox[i] + t * rays.dx[i], rays.oy[i] + t * rays.dy[i], rays.oz[i] + t * rays.dz[i]);
+        let density = grid.tap(place, rays.random[i].f32x3());
         let null = 1.0 - rays.mu_t[i] * density / rays.majorant[i];
         let null = if null > 0.0 { null } else { 0.0 };
 

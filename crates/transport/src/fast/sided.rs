@@ -29,6 +29,8 @@ pub(super) struct Sided {
 
 /// What the next event at a vertex may bring.
 pub(super) struct Direct {
+    /// Number of the light.
+    pub light: usize,
     /// Radiance times what the vertex makes of it, over the densities; without what is in the way.
     pub unshadowed: Vec3,
     /// The light alone, over its density: what an even vertex without competition would bring.
@@ -115,22 +117,34 @@ pub(super) fn draw_light(
     random: &mut Random,
 ) -> Option<Direct> {
     let (number, probability) = scene.choose_light(from, random.f64())?;
-    let light = &scene.lights[number];
-    if let Light::Volume(glow) = light {
-        let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
-        let (value, path_pdf) = value(toward);
-        let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
-        let source = source_at(&scene.volumes[glow.volume()], position, toward);
-        let arriving = source / (density * probability);
-        let unshadowed = (value * arriving * weight).as_vec3();
-        return Some(Direct { unshadowed, arriving: arriving.as_vec3(), is_glow: true, toward, distance });
-    }
-    let sample = light.sample(from, [random.f64(), random.f64()]);
+    let Light::Volume(glow) = &scene.lights[number] else {
+        return Some(draw_lamp(scene, (number, probability), from, value, random));
+    };
+    let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
+    let (value, path_pdf) = value(toward);
+    let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
+    let source = source_at(&scene.volumes[glow.volume()], position, toward);
+    let arriving = source / (density * probability);
+    let unshadowed = (value * arriving * weight).as_vec3();
+    let arriving = arriving.as_vec3();
+    Some(Direct { light: number, unshadowed, arriving, is_glow: true, toward, distance })
+}
+
+/// The same of the light of a number, which was chosen with a probability and is no volume.
+#[inline(always)]
+pub(super) fn draw_lamp(
+    scene: &Scene,
+    (number, probability): (usize, f64),
+    from: DVec3,
+    value: impl Fn(DVec3) -> (DVec3, f64),
+    random: &mut Random,
+) -> Direct {
+    let sample = scene.lights[number].sample(from, [random.f64(), random.f64()]);
     let (value, path_pdf) = value(sample.toward);
     let light_pdf = probability * sample.pdf;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + path_pdf) };
     let arriving = sample.radiance_over_pdf / probability;
     let unshadowed = (value * arriving * weight).as_vec3();
     let (arriving, toward) = (arriving.as_vec3(), sample.toward);
-    Some(Direct { unshadowed, arriving, is_glow: false, toward, distance: sample.distance })
+    Direct { light: number, unshadowed, arriving, is_glow: false, toward, distance: sample.distance }
 }

@@ -3,9 +3,13 @@
 use glam::{Affine3A, DAffine3, DVec3, Vec3};
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::{Density, Light, Ray, Scene, Volume};
+use tyndall_volumes::bricks::Bricks;
 use tyndall_volumes::{BrickGrid, Filter};
 
+use super::coarse::Rough;
+use super::light_cache::LightCache;
 use super::pool::Path;
+use super::thin::Thin;
 use crate::emission::path_weight;
 
 /// Everything in f32 is kept relative to a point amid the volumes, so that a scene far from the origin loses no
@@ -20,6 +24,10 @@ pub(crate) struct FastScene<'a> {
     pub is_sided: bool,
     /// Whether glowing volumes are drawn as lights.
     pub has_volume_lights: bool,
+    /// Roughly what gets through to some of the lights.
+    pub light_cache: Option<LightCache>,
+    /// The scene as one thin grid, if it is that.
+    pub(super) thin: Option<Thin<'a>>,
 }
 
 pub(crate) struct FastVolume<'a> {
@@ -66,7 +74,10 @@ impl<'a> FastScene<'a> {
         let shines = volumes.iter().any(|volume| volume.shines.is_some());
         let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let is_sided = !scene.surfaces.is_empty();
-        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights }
+        let rough = Rough::new(scene, centre);
+        let light_cache = rough.as_ref().and_then(|rough| LightCache::new(scene, rough, centre));
+        let thin = rough.as_ref().and_then(|rough| Thin::new(scene, centre, rough, light_cache.as_ref()));
+        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights, light_cache, thin }
     }
 
     /// Weight of the glow that a path has found at its collision in a volume, against next-event estimation.
@@ -90,27 +101,56 @@ impl<'a> FastScene<'a> {
     }
 }
 
+impl<'a> FastGrid<'a> {
+    pub fn new(grid: &'a BrickGrid, world_to_local: DAffine3, centre: DVec3) -> FastGrid<'a> {
+        let origin = DVec3::from_array(grid.origin().map(f64::from));
+        let to_local =
+            DAffine3::from_translation(-origin) * world_to_local * DAffine3::from_translation(centre);
+        let [min, max] = grid.domain();
+        FastGrid {
+            grid,
+            to_local: to_local.as_affine3a(),
+            min: (min - origin).as_vec3(),
+            max: (max - origin).as_vec3(),
+            spread: match grid.filter() {
+                Filter::Trilinear => 1.0,
+                Filter::Nearest => 0.0,
+            },
+        }
+    }
+
+    /// The voxel drawn with its trilinear weight for the local place; its mean is the field's value.
+    #[inline(always)]
+    pub fn tap(&self, place: Vec3, u: [f32; 3]) -> f32 {
+        let place = place + self.spread * Vec3::from_array(u);
+        let voxel = [place.x as i32 as u32, place.y as i32 as u32, place.z as i32 as u32];
+        let value = match self.grid.bricks() {
+            Bricks::U8(bricks) => self.grid.local_voxel(bricks, voxel),
+            Bricks::F16(bricks) => self.grid.local_voxel(bricks, voxel),
+            Bricks::F32(bricks) => self.grid.local_voxel(bricks, voxel),
+        };
+        if value > 0.0 { value } else { 0.0 }
+    }
+
+    /// The voxel nearest to a place relative to the scene's centre, or nothing outside the domain.
+    pub fn nearest_or_nothing(&self, position: Vec3) -> f32 {
+        let place = self.to_local.transform_point3(position);
+        let is_inside = place.cmpge(self.min).all() && place.cmple(self.max).all();
+        if is_inside { self.nearest(place) } else { 0.0 }
+    }
+
+    /// The voxel nearest to the local place.
+    #[inline(always)]
+    pub fn nearest(&self, place: Vec3) -> f32 {
+        self.tap(place, [0.5; 3])
+    }
+}
+
 impl<'a> FastVolume<'a> {
     fn new(volume: &'a Volume, centre: DVec3) -> FastVolume<'a> {
         let medium = &volume.medium;
         let kind = match &volume.density {
-            Density::Grid(grid) => {
-                let origin = DVec3::from_array(grid.origin().map(f64::from));
-                let to_local = DAffine3::from_translation(-origin)
-                    * volume.world_to_local
-                    * DAffine3::from_translation(centre);
-                let [min, max] = grid.domain();
-                Kind::Grid(FastGrid {
-                    grid,
-                    to_local: to_local.as_affine3a(),
-                    min: (min - origin).as_vec3(),
-                    max: (max - origin).as_vec3(),
-                    spread: match grid.filter() {
-                        Filter::Trilinear => 1.0,
-                        Filter::Nearest => 0.0,
-                    },
-                })
-            }
+            Density::Grid(grid) => Kind::Grid(FastGrid::new(grid, volume.world_to_local, centre)),
             _ => Kind::ClosedForm(volume),
         };
         FastVolume {
@@ -141,7 +181,7 @@ pub(crate) enum Phase<'a> {
 }
 
 impl<'a> Phase<'a> {
-    fn new(phase: &'a PhaseFunction) -> Phase<'a> {
+    pub fn new(phase: &'a PhaseFunction) -> Phase<'a> {
         match *phase {
             PhaseFunction::HenyeyGreenstein { g } if g.abs() > 1e-3 => {
                 Phase::HenyeyGreenstein { g: g as f32 }

@@ -1,0 +1,174 @@
+//! Tables of something all over the media of a scene, a few voxels apart: rough, small enough for a core's cache, and
+//! functions of the scene alone, so that every part of a render has the same ones. They only lead estimators to where it
+//! pays, or stand in for what is then corrected; no expected value depends on them.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use tyndall_scene::{Density, Scene, Volume};
+
+use super::volume::FastGrid;
+
+/// Greatest number of places in a table: 1 MiB.
+const PLACES: f64 = (1 << 18) as f64;
+
+/// The places of a table: a lattice over the box around all volumes. Positions are relative to the scene's centre.
+#[derive(Clone, Copy)]
+pub(super) struct Lattice {
+    pub min: Vec3,
+    pub max: Vec3,
+    /// Places per length.
+    pub per_length: f32,
+    /// Places along each axis, at least 2; x is the slowest in tables.
+    places: [usize; 3],
+}
+
+impl Lattice {
+    /// The places for a scene whose volumes are all somewhere.
+    pub fn new(scene: &Scene, centre: DVec3) -> Option<Lattice> {
+        let boxes: Option<Vec<[DVec3; 2]>> = scene.volumes.iter().map(Volume::world_box).collect();
+        let [min, max] = boxes?.into_iter().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
+        let size = max - min;
+        let spacing = (size.element_product() / PLACES).cbrt().max(size.max_element() * 1e-3);
+        if spacing <= 0.0 || !spacing.is_finite() {
+            return None;
+        }
+        let places = (size / spacing).to_array().map(|count| count.ceil() as usize + 1);
+        let (min, max) = ((min - centre).as_vec3(), (max - centre).as_vec3());
+        Some(Lattice { min, max, per_length: (1.0 / spacing) as f32, places })
+    }
+
+    /// A table of what `value` is at each place.
+    pub fn table(&self, value: impl Fn(Vec3) -> f32 + Sync) -> Vec<f32> {
+        let [nx, ny, nz] = self.places;
+        let spacing = 1.0 / self.per_length;
+        let position = |number: usize| {
+            let at = [number / (ny * nz), number / nz % ny, number % nz];
+            self.min + Vec3::from_array(at.map(|i| i as f32)) * spacing
+        };
+        (0..nx * ny * nz).into_par_iter().map(|number| value(position(number))).collect()
+    }
+
+    /// Mean of something over a cube around a place, as wide as the places are apart, by eight points.
+    pub fn mean_around(&self, position: Vec3, value: impl Fn(Vec3) -> f32) -> f32 {
+        let quarter = 0.25 / self.per_length;
+        let corner = |bits: u32| {
+            Vec3::from_array([0, 1, 2].map(|axis| if bits >> axis & 1 == 1 { quarter } else { -quarter }))
+        };
+        (0..8).map(|bits| value(position + corner(bits))).sum::<f32>() / 8.0
+    }
+
+    /// The table with half of each value from the places around it, so that it is 0 only away from what is not.
+    pub fn spread(&self, table: &[f32]) -> Vec<f32> {
+        let spacing = 1.0 / self.per_length;
+        self.table(|position| {
+            let around = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
+                self.nearest(table, position + axis * spacing)
+                    + self.nearest(table, position - axis * spacing)
+            });
+            0.5 * self.nearest(table, position) + around.iter().sum::<f32>() / 12.0
+        })
+    }
+
+    /// A table's values mixed trilinearly; outside the box, those at its border.
+    #[inline]
+    pub fn lookup(&self, table: &[f32], position: Vec3) -> f32 {
+        let [_, ny, nz] = self.places;
+        let p = self.within(position);
+        let i = [p.x as usize, p.y as usize, p.z as usize];
+        let f = p - Vec3::new(i[0] as f32, i[1] as f32, i[2] as f32);
+        let at = (i[0] * ny + i[1]) * nz + i[2];
+        let row = |at: usize| table[at] + (table[at + 1] - table[at]) * f.z;
+        let face = |at: usize| {
+            let (a, b) = (row(at), row(at + nz));
+            a + (b - a) * f.y
+        };
+        let (a, b) = (face(at), face(at + ny * nz));
+        a + (b - a) * f.x
+    }
+
+    /// A table's value at the nearest place.
+    #[inline]
+    pub fn nearest(&self, table: &[f32], position: Vec3) -> f32 {
+        let [_, ny, nz] = self.places;
+        let p = self.within(position) + 0.5;
+        table[(p.x as usize * ny + p.y as usize) * nz + p.z as usize]
+    }
+
+    /// The greatest optical thickness along any row of places parallel to an axis.
+    pub fn greatest_thickness(&self, mu_t: &[f32]) -> f32 {
+        let [nx, ny, nz] = self.places;
+        let row = |start: usize, stride: usize, count: usize| {
+            (0..count).map(|i| mu_t[start + i * stride]).sum::<f32>() / self.per_length
+        };
+        let along_x = (0..ny * nz).map(|start| row(start, ny * nz, nx));
+        let along_y = (0..nx * nz).map(|number| row(number / nz * (ny * nz) + number % nz, nz, ny));
+        let along_z = (0..nx * ny).map(|number| row(number * nz, 1, nz));
+        along_x.chain(along_y).chain(along_z).fold(0.0, f32::max)
+    }
+
+    /// The area that light which is sent out like this seems to come from, on the mean of the three axes: its sum over
+    /// the mean sum along a line through it.
+    pub fn apparent_area(&self, source: &[f32]) -> f64 {
+        let [nx, ny, nz] = self.places;
+        let mean_line = |starts: &mut dyn Iterator<Item = usize>, stride: usize, count: usize| {
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for start in starts {
+                let line: f64 = (0..count).map(|i| f64::from(source[start + i * stride])).sum();
+                sum += line;
+                squares += line * line;
+            }
+            squares / sum
+        };
+        let lines = mean_line(&mut (0..ny * nz), ny * nz, nx)
+            + mean_line(&mut (0..nx * nz).map(|number| number / nz * (ny * nz) + number % nz), nz, ny)
+            + mean_line(&mut (0..nx * ny).map(|number| number * nz), 1, nz);
+        let total: f64 = source.iter().map(|&x| f64::from(x)).sum();
+        3.0 * total / lines / f64::from(self.per_length).powi(2)
+    }
+
+    /// A point of the cube around a place, by three uniform numbers.
+    #[inline]
+    pub fn within_place(&self, number: usize, u: [f32; 3]) -> Vec3 {
+        let [_, ny, nz] = self.places;
+        let at = [number / (ny * nz), number / nz % ny, number % nz].map(|i| i as f32);
+        self.min + (Vec3::from_array(at) + Vec3::from_array(u) - 0.5) / self.per_length
+    }
+
+    #[inline]
+    fn within(&self, position: Vec3) -> Vec3 {
+        let [nx, ny, nz] = self.places.map(|count| (count - 1) as f32);
+        let last = Vec3::new(nx, ny, nz) * (1.0 - f32::EPSILON);
+        ((position - self.min) * self.per_length).clamp(Vec3::ZERO, last)
+    }
+}
+
+/// The extinction of a scene that is grids and nothing else.
+pub(super) struct Rough {
+    pub lattice: Lattice,
+    /// Means of μt over the cubes around the places.
+    pub mu_t: Vec<f32>,
+}
+
+impl Rough {
+    /// That of the scene, if it is of this kind and no shape bounds the grids.
+    pub fn new(scene: &Scene, centre: DVec3) -> Option<Rough> {
+        if !scene.boundaries.is_empty() {
+            return None;
+        }
+        let grids: Vec<(FastGrid<'_>, f32)> =
+            scene.volumes.iter().map(|volume| grid(volume, centre)).collect::<Option<_>>()?;
+        let lattice = Lattice::new(scene, centre)?;
+        let mu_t = lattice.table(|position| {
+            lattice.mean_around(position, |position| {
+                grids.iter().map(|(grid, mu_t)| mu_t * grid.nearest_or_nothing(position)).sum()
+            })
+        });
+        Some(Rough { lattice, mu_t })
+    }
+}
+
+/// A volume's grid, if it is one, and its μt at density 1.
+fn grid(volume: &Volume, centre: DVec3) -> Option<(FastGrid<'_>, f32)> {
+    let Density::Grid(grid) = &volume.density else { return None };
+    Some((FastGrid::new(grid, volume.world_to_local, centre), volume.medium.mu_t as f32))
+}
