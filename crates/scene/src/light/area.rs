@@ -11,13 +11,15 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::LightSample;
-use super::spherical_rectangle::SphericalRectangle;
+use super::spherical_rectangle::{Rectangle, SphericalRectangle};
 use crate::surface::{SurfacePoint, WorldPrimitive};
 
 /// A surface that shines.
 #[derive(Debug, Clone)]
 pub struct AreaLight {
     primitives: Vec<WorldPrimitive>,
+    /// The only primitive, if that is a rectangle.
+    rectangle: Option<Rectangle>,
     /// Area of all primitives up to and with each.
     cumulative_area: Vec<f64>,
     radiance: DVec3,
@@ -43,7 +45,11 @@ impl AreaLight {
         if !(area.is_finite() && area > 0.0) {
             cumulative_area.clear();
         }
-        Self { primitives, cumulative_area, radiance, two_sided }
+        let rectangle = match primitives.as_slice() {
+            [WorldPrimitive::Parallelogram { corner, u, v }] => Rectangle::new(*corner, *u, *v),
+            _ => None,
+        };
+        Self { primitives, rectangle, cumulative_area, radiance, two_sided }
     }
 
     /// The area, in squared scene units; 0 for a lamp that cannot be sampled.
@@ -97,7 +103,7 @@ impl AreaLight {
                 let offset = rectangle.sample(u) - from;
                 let distance = offset.length();
                 let toward = offset / distance;
-                let normal = self.primitives[0].flat_normal().unwrap_or(DVec3::ZERO);
+                let normal = self.rectangle.as_ref().map_or(DVec3::ZERO, Rectangle::normal);
                 found(from, toward, distance, self.radiance_from(normal, toward), rectangle.pdf())
             }
             View::Area(area) => self.see(from, &self.uniform_point(area, u)),
@@ -148,12 +154,12 @@ impl AreaLight {
         if area <= 0.0 {
             return View::Nothing;
         }
+        if let Some(rectangle) = &self.rectangle {
+            return rectangle.seen_from(from).map_or(View::Area(area), View::Rectangle);
+        }
         match self.primitives.as_slice() {
             [WorldPrimitive::Sphere { center, radius, .. }] => {
                 ConeOfSphere::new(from, *center, *radius).map_or(View::Area(area), View::Sphere)
-            }
-            [WorldPrimitive::Parallelogram { corner, u, v }] => {
-                SphericalRectangle::new(from, *corner, *u, *v).map_or(View::Area(area), View::Rectangle)
             }
             _ => View::Area(area),
         }
