@@ -103,7 +103,12 @@ impl SurfaceVertex {
         if goes_through {
             scene.boundaries.cross(&mut presence, &scene.surfaces, &self.hit, direction);
         }
-        (Ray { origin: self.hit.leave(direction), direction }, presence)
+        (self.depart(direction), presence)
+    }
+
+    /// A ray from the surface in `direction`, where no volumes begin or end.
+    pub fn depart(&self, direction: DVec3) -> Ray {
+        Ray { origin: self.hit.leave(direction), direction }
     }
 
     /// Whether `direction` is on one side of the surface and on the other of the bent one that shading sees. No light goes

@@ -10,6 +10,7 @@
 //! a shadow ray whose contribution would be small is traced with a small probability and weighs the more. With a
 //! forward-peaked phase function most shadow rays are of that kind.
 
+mod homogeneous;
 mod march;
 mod pool;
 mod sided;
@@ -23,7 +24,7 @@ use crate::found_light;
 use crate::path_layers::FirstMet;
 use crate::roulette::survival;
 use crate::shadow_catcher;
-use crate::way::Span;
+use crate::way::{Span, is_plain};
 use glam::{DVec3, Vec3};
 use march::List;
 use pool::{POOL, Path, Pixel, Rays};
@@ -58,14 +59,22 @@ pub(crate) fn render_tiles(
         #[allow(unsafe_code)]
         return unsafe { run_avx2(scene, tiles, seed, cancel) };
     }
-    Engine::new(scene, tiles, seed).run(cancel)
+    run(scene, tiles, seed, cancel)
+}
+
+#[inline(always)]
+fn run(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
+    match &scene.homogeneous {
+        Some(homogeneous) => homogeneous.render_tiles(tiles, seed, cancel),
+        None => Engine::new(scene, tiles, seed).run(cancel),
+    }
 }
 
 /// The same code, compiled for wider vectors. Fused multiply-add stays off, so that the bits are the same.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn run_avx2(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-    Engine::new(scene, tiles, seed).run(cancel)
+    run(scene, tiles, seed, cancel)
 }
 
 struct Engine<'a> {
@@ -107,7 +116,7 @@ impl<'a> Engine<'a> {
             film_width: u64::from(scene.scene.resolution[0]),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
-            sided: if scene.is_sided { vec![Sided::new(); POOL] } else { Vec::new() },
+            sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
             work: Work::default(),
             active: 0,
         }
@@ -243,7 +252,7 @@ impl<'a> Engine<'a> {
         let shadow = self.rays.shadow[slot] > 0.0;
         let path = &mut self.paths[slot];
         let direction = if shadow { path.shadow_direction } else { path.direction };
-        let spans = if self.scene.is_sided { Some(self.sided[slot].spans(shadow)) } else { None };
+        let spans = self.sided.get(slot).and_then(|sided| sided.spans(shadow));
         let count = spans.map_or(self.scene.volumes.len(), <[Span]>::len);
         for place in first..count {
             let end = path.nearest.map_or(path.ray_end, |(_, distance)| distance);
@@ -315,11 +324,12 @@ impl<'a> Engine<'a> {
         let ray = self.scene.world_ray(path.position, path.direction);
         let end = path.nearest.map_or(f64::from(path.ray_end), |(_, distance)| f64::from(distance));
         let everywhere: Vec<Span>;
-        let spans = if self.scene.is_sided {
-            self.sided[slot].spans(false)
-        } else {
-            everywhere = Span::everywhere(self.scene.volumes.len(), f64::INFINITY);
-            &everywhere
+        let spans = match self.sided.get(slot).and_then(|sided| sided.spans(false)) {
+            Some(spans) => spans,
+            None => {
+                everywhere = Span::everywhere(self.scene.volumes.len(), f64::INFINITY);
+                &everywhere
+            }
         };
         for span in spans.iter().filter(|span| span.start < end) {
             let Some(volume) = self.scene.volumes[span.volume].shines else { continue };

@@ -25,6 +25,8 @@ pub(super) struct Sided {
     pub shadow: Way,
     /// The part of the throughput that is due to refraction, which roulette leaves out.
     pub refraction: f64,
+    /// Whether the scene's surfaces are [plain](crate::way::is_plain).
+    is_plain: bool,
 }
 
 /// What the next event at a vertex may bring.
@@ -40,20 +42,27 @@ pub(super) struct Direct {
 }
 
 impl Sided {
-    pub fn new() -> Self {
+    pub fn new(is_plain: bool) -> Self {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
         let presence = Presence::default();
-        Self { ray, presence, way: Way::nothing(), shadow: Way::nothing(), refraction: 1.0 }
+        Self { ray, presence, way: Way::nothing(), shadow: Way::nothing(), refraction: 1.0, is_plain }
     }
 
-    /// Where the volumes are that the current ray goes through.
-    pub fn spans(&self, is_shadow: bool) -> &[Span] {
-        if is_shadow { &self.shadow.spans } else { &self.way.spans }
+    /// Where the volumes are that the current ray goes through; `None` if all are present all the way.
+    pub fn spans(&self, is_shadow: bool) -> Option<&[Span]> {
+        if self.is_plain {
+            return None;
+        }
+        Some(if is_shadow { &self.shadow.spans } else { &self.way.spans })
     }
 
     /// Finds what the path's ray meets.
     pub fn look_ahead(&mut self, scene: &Scene, random: &mut Random) {
-        self.way = Way::trace(scene, &self.ray, f64::INFINITY, &self.presence, random);
+        if self.is_plain {
+            self.way.follow_plainly(scene, &self.ray);
+        } else {
+            self.way.follow(scene, &self.ray, f64::INFINITY, &self.presence, random);
+        }
     }
 
     /// Moves to the collision at the distance `t`; its place.
@@ -96,13 +105,11 @@ impl Sided {
         presence: &Presence,
         random: &mut Random,
     ) -> bool {
-        match Way::connect(scene, ray, distance, presence, random) {
-            Some(way) => {
-                self.shadow = way;
-                true
-            }
-            None => false,
+        if self.is_plain {
+            return !scene.surfaces.stand_in(ray, distance);
         }
+        self.shadow.follow(scene, ray, distance, presence, random);
+        self.shadow.hit.is_none()
     }
 }
 

@@ -5,6 +5,7 @@ use tyndall_optics::PhaseFunction;
 use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 use tyndall_volumes::{BrickGrid, Filter};
 
+use super::homogeneous::Homogeneous;
 use super::pool::Path;
 use crate::emission::path_weight;
 
@@ -20,6 +21,8 @@ pub(crate) struct FastScene<'a> {
     pub is_sided: bool,
     /// Whether glowing volumes are drawn as lights.
     pub has_volume_lights: bool,
+    /// The scene without a pool, if it is homogeneous.
+    pub(super) homogeneous: Option<Homogeneous<'a>>,
 }
 
 pub(crate) struct FastVolume<'a> {
@@ -66,7 +69,8 @@ impl<'a> FastScene<'a> {
         let shines = volumes.iter().any(|volume| volume.shines.is_some());
         let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let is_sided = !scene.surfaces.is_empty();
-        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights }
+        let homogeneous = Homogeneous::new(scene);
+        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights, homogeneous }
     }
 
     /// Weight of the glow that a path has found at its collision in a volume, against next-event estimation.
@@ -141,7 +145,7 @@ pub(crate) enum Phase<'a> {
 }
 
 impl<'a> Phase<'a> {
-    fn new(phase: &'a PhaseFunction) -> Phase<'a> {
+    pub fn new(phase: &'a PhaseFunction) -> Phase<'a> {
         match *phase {
             PhaseFunction::HenyeyGreenstein { g } if g.abs() > 1e-3 => {
                 Phase::HenyeyGreenstein { g: g as f32 }

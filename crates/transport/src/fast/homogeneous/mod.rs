@@ -1,0 +1,271 @@
+//! Paths among surfaces in one homogeneous medium, or none: fog in a room, and rooms without fog.
+//!
+//! Beer's law gives the transmittance of any way here, so that hardly anything is left to chance along a ray that runs from x
+//! to a surface z. Of
+//!
+//!   L(x,ω) = ∫₀^z T(x,y) μs Ls(y,ω) dy + T(x,z) Lo(z,ω)
+//!
+//! every ray gets an estimate of both terms: what lamps send straight to the way through the medium and what is scattered
+//! there once ([`lit_way`]), and T times what the surface sends out and reflects of the lamps. Only where the path goes on, for
+//! light that has turned more often, is chosen: a collision, drawn with density μt T, or the surface. The reference integrator
+//! takes this choice for all of the light, and has the same mean.
+//!
+//! There is nothing to march through, and thus no pool: one path after the other, each from its start to its end.
+
+mod distances;
+mod lit_way;
+mod stretch;
+
+use glam::{DVec3, Vec3};
+use std::sync::atomic::{AtomicBool, Ordering};
+use tyndall_film::{FilmTile, Sample};
+use tyndall_lanes::Random;
+use tyndall_optics::PhaseFunction;
+use tyndall_scene::{Channels, Density, Hit, Light, Ray, Scene};
+
+use self::lit_way::Lamps;
+use self::stretch::{Fog, Stretch};
+use super::sided::{Direct, draw_light};
+use crate::found_light::{self, Turned};
+use crate::path_layers::{FirstMet, PathLayers};
+use crate::roulette::survival;
+use crate::surface_vertex::SurfaceVertex;
+use crate::way::is_plain;
+
+/// Throughput below which roulette is played; survivors get twice this.
+const ROULETTE_THROUGHPUT: f64 = 0.25;
+
+/// A scene that is one homogeneous medium, or none, among surfaces that stop every ray.
+pub(super) struct Homogeneous<'a> {
+    scene: &'a Scene,
+    fog: Option<Fog<'a>>,
+    lamps: Lamps,
+    infinite: Vec<usize>,
+}
+
+impl<'a> Homogeneous<'a> {
+    /// The scene as this; `None` if it is another kind of scene.
+    pub fn new(scene: &'a Scene) -> Option<Self> {
+        let fog = match scene.volumes.as_slice() {
+            [] => None,
+            [volume] => {
+                let is_even = !matches!(volume.density, Density::Grid(_) | Density::Atmosphere { .. });
+                let is_dark =
+                    volume.medium.emission == DVec3::ZERO && volume.medium.emission_per_length == DVec3::ZERO;
+                let is_oriented = matches!(volume.medium.phase_function, PhaseFunction::Sggx(_));
+                if !is_even || !is_dark || is_oriented || volume.fields.is_some() || volume.medium.mu_t <= 0.0
+                {
+                    return None;
+                }
+                Some(Fog::new(volume))
+            }
+            _ => return None,
+        };
+        let glows = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
+        let catches = scene.surfaces.shapes.iter().any(|shape| shape.is_shadow_catcher);
+        if glows || catches || !is_plain(scene) {
+            return None;
+        }
+        let lamps = Lamps::new(scene, fog.as_ref());
+        let infinite = (0..scene.lights.len()).filter(|&light| scene.lights[light].is_infinite()).collect();
+        Some(Self { scene, fog, lamps, infinite })
+    }
+
+    /// Renders all samples of `tiles`; `false` if `cancel` was set before they were complete.
+    #[inline(always)]
+    pub fn render_tiles(&self, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
+        let columns = u64::from(self.scene.resolution[0]);
+        for tile in tiles {
+            let (rect, samples) = (tile.rect(), tile.samples());
+            for y in rect.y..rect.y + rect.height {
+                if cancel.load(Ordering::Relaxed) {
+                    return false;
+                }
+                for x in rect.x..rect.x + rect.width {
+                    let pixel = u64::from(y) * columns + u64::from(x);
+                    for sample in samples.clone() {
+                        let mut random = Random::new(seed, pixel, sample);
+                        let film_u = [random.f64(), random.f64()];
+                        let lens_u = [random.f64(), random.f64()];
+                        let ray = self.scene.camera.ray([x, y], film_u, lens_u);
+                        tile.add(x, y, &self.trace(ray, &mut random));
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// One estimate of the radiance that arrives along `ray`.
+    #[inline(always)]
+    fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
+        let scene = self.scene;
+        let mut layers = PathLayers::<Vec3>::default();
+        let mut path = Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None };
+        let (mut turns, mut scatterings) = (0, 0);
+        loop {
+            let may_turn = scene.max_depth.is_none_or(|depth| turns < depth);
+            let hit = scene.surfaces.intersect(&path.ray, f64::INFINITY);
+            let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
+            let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
+            let through = path.throughput * stretch.through();
+            let found = match &hit {
+                Some(hit) => self.lamp(hit, &path),
+                None => self.surroundings(&path),
+            };
+            layers.add(scatterings, through * found);
+
+            let collision = stretch.collision(random);
+            if turns == 0 {
+                layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
+            }
+            if !may_turn {
+                break;
+            }
+            if let Some(fog) = &self.fog {
+                let lit = self.lamps.in_scattered(scene, fog, &stretch, &path.ray, random);
+                layers.add(scatterings + 1, path.throughput * lit);
+            }
+            let vertex = hit.map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
+            if let Some(vertex) = &vertex {
+                layers.add(scatterings, through * self.reflected(vertex, random));
+            }
+
+            turns += 1;
+            match (collision, &self.fog, &vertex) {
+                (Some(t), Some(fog), _) => {
+                    path.throughput *= fog.albedo;
+                    if !path.survives_roulette(turns, random) {
+                        break;
+                    }
+                    scatterings += 1;
+                    let before = path.ray.direction.as_vec3();
+                    let onward = fog.phase.sample(before, random.f32x2());
+                    let pdf = f64::from(fog.phase.value(before, onward));
+                    let position = path.ray.at(t);
+                    path.turn = Turn::Collision { ray: path.ray, stretch, t, pdf };
+                    path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
+                }
+                (_, _, Some(vertex)) => {
+                    let Some(onward) = vertex.sample(random) else { break };
+                    path.throughput *= onward.weight.truncate().as_vec3();
+                    path.refraction *= onward.radiance_scale;
+                    if !path.survives_roulette(turns, random) {
+                        break;
+                    }
+                    path.turn = match onward.pdf {
+                        Some(pdf) => Turn::Surface { from: vertex.position(), pdf },
+                        None => Turn::None,
+                    };
+                    path.ray = vertex.depart(onward.direction);
+                }
+                _ => break,
+            }
+        }
+        layers.into_sample(|colour| colour.as_dvec3())
+    }
+
+    /// Light of one lamp that the surface reflects towards the path, after its way through the medium.
+    #[inline(always)]
+    fn reflected(&self, vertex: &SurfaceVertex, random: &mut Random) -> Vec3 {
+        if vertex.is_delta() {
+            return Vec3::ZERO;
+        }
+        let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
+        let direct = draw_light(self.scene, vertex.position(), value, random);
+        let Some(Direct { unshadowed, toward, distance, .. }) = direct else { return Vec3::ZERO };
+        if unshadowed == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
+        let ray = vertex.depart(toward);
+        if self.scene.surfaces.stand_in(&ray, distance) {
+            return Vec3::ZERO;
+        }
+        unshadowed * Stretch::new(self.fog.as_ref(), &ray, distance).through()
+    }
+
+    /// Radiance of the lamp, if it is one, that the path meets, with its weight.
+    #[inline(always)]
+    fn lamp(&self, hit: &Hit, path: &Path) -> Vec3 {
+        let Some((number, lamp)) = self.scene.lamp(hit) else { return Vec3::ZERO };
+        let direction = path.ray.direction;
+        let Turn::Collision { ray, stretch, t, pdf } = &path.turn else {
+            return found_light::lamp(self.scene, hit, direction, path.turned()).as_vec3();
+        };
+        let cos = direction.dot(hit.normal).abs();
+        let light_pdf = hit.position.distance_squared(path.ray.origin) / (cos * lamp.area());
+        let weight = self.lamps.path_weight(self.scene, number, (ray, stretch), *t, [*pdf, light_pdf]);
+        (lamp.radiance_from(hit.normal, direction) * weight).as_vec3()
+    }
+
+    /// Radiance of the lights at infinity along the path, with its weight.
+    #[inline(always)]
+    fn surroundings(&self, path: &Path) -> Vec3 {
+        let mut sum = DVec3::ZERO;
+        let direction = path.ray.direction;
+        for &number in &self.infinite {
+            let light = &self.scene.lights[number];
+            let weight = match &path.turn {
+                Turn::Collision { ray, stretch, t, pdf } => {
+                    let light_pdf = light.pdf(direction);
+                    self.lamps.path_weight(self.scene, number, (ray, stretch), *t, [*pdf, light_pdf])
+                }
+                _ => found_light::weight(self.scene, number, path.turned(), |_| light.pdf(direction)),
+            };
+            sum += light.radiance(direction) * weight;
+        }
+        sum.as_vec3()
+    }
+
+    /// What a camera ray meets first.
+    #[cold]
+    fn first_met(&self, collision: Option<f64>, hit: Option<&Hit>, ray: &Ray) -> Option<FirstMet> {
+        if let (Some(distance), Some(fog)) = (collision, &self.fog) {
+            return Some(FirstMet { distance, albedo: fog.albedo.as_dvec3(), ..FirstMet::default() });
+        }
+        let vertex = SurfaceVertex::new(self.scene, hit?, ray.direction, &Channels::Rgb);
+        Some(vertex.first_met(self.scene, vertex.albedo().truncate()))
+    }
+}
+
+/// A path under way.
+struct Path {
+    ray: Ray,
+    throughput: Vec3,
+    /// The part of the throughput that is due to refraction, which roulette leaves out.
+    refraction: f64,
+    turn: Turn,
+}
+
+/// How a path turned last.
+enum Turn {
+    /// Not at all, or at a mirror: nothing else finds what it finds.
+    None,
+    /// At a surface, with this density into its direction.
+    Surface { from: DVec3, pdf: f64 },
+    /// At the distance `t` along a ray through a stretch of the medium.
+    Collision { ray: Ray, stretch: Stretch, t: f64, pdf: f64 },
+}
+
+impl Path {
+    /// What found light is weighted by, but after a collision.
+    #[inline(always)]
+    fn turned(&self) -> Turned {
+        match self.turn {
+            Turn::Surface { from, pdf } => Some((from, pdf)),
+            Turn::None | Turn::Collision { .. } => None,
+        }
+    }
+
+    /// Ends a weak path with a probability that its survivors' weight makes up for.
+    #[inline(always)]
+    fn survives_roulette(&mut self, turns: u32, random: &mut Random) -> bool {
+        let strength = f64::from(self.throughput.max_element()) / self.refraction;
+        let probability = survival(strength, ROULETTE_THROUGHPUT, turns);
+        if probability < 1.0 && random.f64() >= probability {
+            return false;
+        }
+        self.throughput /= probability as f32;
+        true
+    }
+}
