@@ -67,6 +67,11 @@ impl AreaLight {
         self.two_sided
     }
 
+    /// Radiance that it sends out.
+    pub fn radiance(&self) -> DVec3 {
+        self.radiance
+    }
+
     /// Radiance that arrives along a ray in the unit vector `direction` which meets the lamp where its normal to the outer
     /// side is `normal`.
     pub fn radiance_from(&self, normal: DVec3, direction: DVec3) -> DVec3 {
@@ -111,6 +116,7 @@ impl AreaLight {
     }
 
     /// A point of the lamp, uniform by area; none of a lamp that cannot be sampled.
+    #[inline]
     pub fn point(&self, u: [f64; 2]) -> Option<SurfacePoint> {
         let area = self.area();
         (area > 0.0).then(|| self.uniform_point(area, u))
@@ -138,7 +144,11 @@ impl AreaLight {
         PI * self.radiance * (self.area() * sides)
     }
 
+    #[inline]
     fn uniform_point(&self, area: f64, u: [f64; 2]) -> SurfacePoint {
+        if let Some(rectangle) = &self.rectangle {
+            return SurfacePoint { position: rectangle.at(u), normal: rectangle.normal() };
+        }
         let target = u[0] * area;
         let last = self.primitives.len() - 1;
         let chosen = self.cumulative_area.partition_point(|&up_to| up_to <= target).min(last);

@@ -54,7 +54,14 @@ impl Rectangle {
         is_right_angled.then(|| Self { corner, axes, size: [u.length(), v.length()] })
     }
 
+    /// The point that divides the edges like `u`.
+    #[inline]
+    pub(super) fn at(&self, u: [f64; 2]) -> DVec3 {
+        self.corner + self.axes[0] * (self.size[0] * u[0]) + self.axes[1] * (self.size[1] * u[1])
+    }
+
     /// Unit normal to the outer side.
+    #[inline]
     pub(super) fn normal(&self) -> DVec3 {
         self.axes[2]
     }

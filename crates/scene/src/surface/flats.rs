@@ -51,7 +51,7 @@ impl Flats {
     }
 
     /// The shape that `ray` meets first before `end`, and where.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(&self, ray: &Ray, end: f64) -> Option<(usize, LocalHit)> {
         let (mut nearest, mut found) = (end, None);
         for group in &self.groups {
@@ -67,7 +67,7 @@ impl Flats {
     }
 
     /// Whether `ray` meets any of them before `end`.
-    #[inline]
+    #[inline(always)]
     pub fn stand_in(&self, ray: &Ray, end: f64) -> bool {
         self.groups.iter().any(|group| group.distances(ray).0.iter().any(|&t| t < end))
     }

@@ -173,6 +173,22 @@ impl<'a> Phase<'a> {
         }
     }
 
+    /// Values for directions afterwards that are given by component.
+    #[inline(always)]
+    pub fn values<const N: usize>(self, before: Vec3, after: &[[f32; N]; 3]) -> [f32; N] {
+        let mut values = [0.0; N];
+        if let Phase::Other(phase) = self {
+            for k in 0..N {
+                values[k] = other_value(phase, before, Vec3::new(after[0][k], after[1][k], after[2][k]));
+            }
+        } else {
+            for k in 0..N {
+                values[k] = self.value(before, Vec3::new(after[0][k], after[1][k], after[2][k]));
+            }
+        }
+        values
+    }
+
     #[inline(always)]
     pub fn sample(self, before: Vec3, u: [f32; 2]) -> Vec3 {
         let cos_theta = match self {

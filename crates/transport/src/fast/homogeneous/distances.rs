@@ -10,14 +10,15 @@
 //! place beside the ray: for them all follow p_c.
 
 use glam::DVec3;
+use tyndall_lanes::sin_cos_turns;
 use tyndall_scene::Ray;
 
 use super::stretch::Stretch;
 
 /// Optical thickness below which the second half is uniform.
-const THIN: f64 = 0.05;
+const THIN: f32 = 0.05;
 /// Optical thickness behind which no equiangular distances lie, however far the medium goes on.
-const DEEP: f64 = 40.0;
+const DEEP: f32 = 40.0;
 
 /// Where a lamp is.
 #[derive(Debug, Clone, Copy)]
@@ -29,95 +30,112 @@ pub(super) struct Place {
 
 /// The mixture.
 pub(super) struct Distances {
-    stretch: Stretch,
+    length: f32,
+    mu_t: f32,
     equiangular: Option<Equiangular>,
     /// 1 − T of the whole stretch; none where the second half is uniform.
-    opacity: Option<f64>,
+    opacity: Option<f32>,
 }
 
-/// As `distance::equiangular`, by the tangent of the first angle and the difference of both.
+/// As `distance::equiangular`, by cosine and sine of the first angle and the difference of both.
+#[derive(Clone, Copy)]
 struct Equiangular {
-    nearest: f64,
-    distance: f64,
-    first: f64,
-    angle: f64,
-    end: f64,
+    nearest: f32,
+    distance: f32,
+    first: [f32; 2],
+    /// In turns.
+    angle: f32,
+    end: f32,
 }
 
 impl Distances {
     #[inline(always)]
-    pub fn new(place: Option<&Place>, ray: &Ray, stretch: &Stretch) -> Self {
-        let is_thin = stretch.mu_t * (stretch.end - stretch.start) < THIN;
-        let opacity = (!is_thin).then(|| 1.0 - f64::from(stretch.through()));
-        let equiangular = place.and_then(|place| Equiangular::new(place, ray, stretch));
-        Self { stretch: *stretch, equiangular, opacity }
+    pub fn new(place: Option<&Place>, stretch: &Stretch) -> Self {
+        let Stretch { length, mu_t, .. } = *stretch;
+        let is_thin = mu_t * length < THIN;
+        let opacity = (!is_thin).then(|| 1.0 - stretch.through);
+        let end = length.min(DEEP / mu_t);
+        let equiangular = place.and_then(|place| Equiangular::new(place, &stretch.ray, end));
+        Self { length, mu_t, equiangular, opacity }
     }
 
-    /// The distance number `k` of `count`, an even number, by numbers for either half in [0, 1).
+    /// `N` distances, an even number of them, by numbers for either half in [0, 1).
     #[inline(always)]
-    pub fn draw(&self, k: usize, count: usize, u: [f32; 2]) -> f64 {
-        let halves = self.equiangular.as_ref().map(|equiangular| (equiangular, k % 2 == 0));
-        match halves {
-            Some((equiangular, true)) => {
-                equiangular.draw((k / 2) as f64 + f64::from(u[0]), (count / 2) as f64, &self.stretch)
+    pub fn draw<const N: usize>(&self, u: [f32; 2]) -> [f32; N] {
+        let mut t = [0.0; N];
+        let half = if self.equiangular.is_some() { N / 2 } else { 0 };
+        if let Some(equiangular) = &self.equiangular {
+            for k in 0..N / 2 {
+                t[k] = equiangular.at((k as f32 + u[0]) * (1.0 / (N / 2) as f32));
             }
-            Some(_) => self.by_transmittance(((k / 2) as f32 + u[1]) / (count / 2) as f32),
-            None => self.by_transmittance((k as f32 + u[1]) / count as f32),
         }
+        let scale = 1.0 / (N - half) as f32;
+        for k in half..N {
+            let u = ((k - half) as f32 + u[1]) * scale;
+            t[k] = match self.opacity {
+                None => u * self.length,
+                Some(opacity) => -tyndall_lanes::ln(1.0 - u * opacity) / self.mu_t,
+            };
+        }
+        for t in &mut t {
+            *t = t.max(0.0).min(self.length);
+        }
+        t
     }
 
+    /// Densities of distances, per length, where the transmittance is known.
     #[inline(always)]
-    fn by_transmittance(&self, u: f32) -> f64 {
-        let Stretch { start, end, mu_t, .. } = self.stretch;
-        let t = match self.opacity {
-            None => start + f64::from(u) * (end - start),
-            Some(opacity) => start - f64::from(tyndall_lanes::ln(1.0 - u * opacity as f32)) / mu_t,
-        };
-        t.clamp(start, end)
-    }
-
-    /// Density of distances, per length.
-    #[inline(always)]
-    pub fn pdf(&self, t: f64) -> f64 {
-        let Stretch { start, end, mu_t, .. } = self.stretch;
-        let by_transmittance = match self.opacity {
-            None => 1.0 / (end - start),
-            Some(opacity) => mu_t * f64::from(self.stretch.transmittance(t)) / opacity,
-        };
-        match &self.equiangular {
-            Some(equiangular) => 0.5 * (equiangular.pdf(t) + by_transmittance),
-            None => by_transmittance,
+    pub fn pdfs<const N: usize>(&self, t: &[f32; N], transmittance: &[f32; N]) -> [f32; N] {
+        let mut pdf = [1.0 / self.length; N];
+        if let Some(opacity) = self.opacity {
+            let scale = self.mu_t / opacity;
+            for k in 0..N {
+                pdf[k] = scale * transmittance[k];
+            }
         }
+        if let Some(equiangular) = &self.equiangular {
+            for k in 0..N {
+                pdf[k] = 0.5 * (pdf[k] + equiangular.pdf(t[k]));
+            }
+        }
+        pdf
     }
 }
 
 impl Equiangular {
+    /// None where angles do not tell places on the ray from each other.
     #[inline(always)]
-    fn new(place: &Place, ray: &Ray, stretch: &Stretch) -> Option<Self> {
+    fn new(place: &Place, ray: &Ray, end: f32) -> Option<Self> {
         let offset = place.center - ray.origin;
         let nearest = offset.dot(ray.direction);
         let beside = (offset - ray.direction * nearest).length_squared();
         let distance = (beside + place.softening).sqrt();
-        let end = stretch.end.min(stretch.start + DEEP / stretch.mu_t);
-        let (first, last) = ((stretch.start - nearest) / distance, (end - nearest) / distance);
-        let angle = (last - first).atan2(1.0 + first * last);
-        // Nearer the ray, angles do not tell places on it.
-        let is_usable = distance > 1e-9 * (end - stretch.start) && angle > 0.0;
-        is_usable.then_some(Self { nearest, distance, first, angle, end })
+        let (a, b) = (-nearest, f64::from(end) - nearest);
+        let angle = (distance * (b - a)).atan2(distance * distance + a * b);
+        let scale = 1.0 / (distance * distance + a * a).sqrt();
+        let is_usable = distance > 1e-6 * f64::from(end) && angle > 0.0;
+        is_usable.then_some(Self {
+            nearest: nearest as f32,
+            distance: distance as f32,
+            first: [(distance * scale) as f32, (a * scale) as f32],
+            angle: (angle * (0.5 * std::f64::consts::FRAC_1_PI)) as f32,
+            end,
+        })
     }
 
     #[inline(always)]
-    fn draw(&self, stratum: f64, strata: f64, stretch: &Stretch) -> f64 {
-        let (sin, cos) = (self.angle * (stratum / strata)).sin_cos();
-        // The tangent of the sum of two angles.
-        let tangent = (self.first * cos + sin) / (cos - self.first * sin);
-        (self.nearest + self.distance * tangent).clamp(stretch.start, self.end)
+    fn at(&self, u: f32) -> f32 {
+        let (sin, cos) = sin_cos_turns(self.angle * u);
+        let [first_cos, first_sin] = self.first;
+        let tangent = (first_sin * cos + first_cos * sin) / (first_cos * cos - first_sin * sin);
+        (self.nearest + self.distance * tangent).min(self.end)
     }
 
     #[inline(always)]
-    fn pdf(&self, t: f64) -> f64 {
+    fn pdf(&self, t: f32) -> f32 {
         let along = t - self.nearest;
         let squared = self.distance * self.distance + along * along;
-        if t <= self.end { self.distance / (self.angle * squared) } else { 0.0 }
+        let angle = self.angle * std::f32::consts::TAU;
+        if t <= self.end { self.distance / (angle * squared) } else { 0.0 }
     }
 }

@@ -10,13 +10,11 @@
 
 use glam::{DVec3, Vec3};
 use tyndall_lanes::Random;
-use tyndall_scene::{Light, LightSample, Ray, Scene};
+use tyndall_scene::{Light, Ray, Scene};
 
 use super::distances::{Distances, Place};
+use super::points::Points;
 use super::stretch::{Fog, Stretch};
-
-/// Pairs of distances and points that are looked at.
-const CANDIDATES: usize = 4;
 
 /// s² of a lamp over its area.
 const SOFTNESS: f64 = 0.1;
@@ -29,16 +27,6 @@ struct Lamp {
     place: Option<Place>,
     /// Whether the medium fills all of the way from a place in it to the lamp.
     is_in_fog: bool,
-}
-
-/// What a pair may bring.
-#[derive(Clone, Copy)]
-struct Candidate {
-    t: f64,
-    toward: DVec3,
-    distance: f64,
-    colour: Vec3,
-    strength: f32,
 }
 
 impl Lamps {
@@ -68,75 +56,58 @@ impl Lamps {
 
     /// The light of one lamp that is scattered once on the stretch of `ray`.
     #[inline(always)]
-    pub fn in_scattered(
+    pub fn in_scattered<const N: usize>(
         &self,
         scene: &Scene,
         fog: &Fog,
         stretch: &Stretch,
-        ray: &Ray,
         random: &mut Random,
     ) -> Vec3 {
-        if stretch.end <= stretch.start {
+        let ray = &stretch.ray;
+        if stretch.length <= 0.0 {
             return Vec3::ZERO;
         }
         let Some((number, probability)) = scene.choose_light(ray.origin, random.f64()) else {
             return Vec3::ZERO;
         };
-        let (light, lamp) = (&scene.lights[number], &self.0[number]);
-        let distances = Distances::new(lamp.place.as_ref(), ray, stretch);
-        let before = ray.direction.as_vec3();
-        let u_distance = random.f32x2();
-        let u_light = random.f32x2();
-        let count = CANDIDATES as f32;
-
-        let candidate = |k: usize| {
-            let t = distances.draw(k, CANDIDATES, u_distance);
-            let position = ray.at(t);
-            let sample = point_of(light, position, spread(u_light, k));
-            let phase = fog.phase.value(before, sample.toward.as_vec3());
-            let collisions = (stretch.mu_t as f32) * stretch.transmittance(t);
-            let density = distances.pdf(t) as f32 * probability as f32;
-            let weight = if sample.is_delta {
-                1.0
-            } else {
-                let by_way = count * density * sample.pdf as f32;
-                by_way / (by_way + collisions * phase)
-            };
-            let to_lamp = if lamp.is_in_fog {
-                tyndall_lanes::exp((-stretch.mu_t * sample.distance) as f32)
-            } else {
-                let shadow_ray = Ray { origin: position, direction: sample.toward };
-                Stretch::new(Some(fog), &shadow_ray, sample.distance).through()
-            };
-            let factor = collisions * phase * weight * to_lamp / (count * density);
-            let colour = sample.radiance_over_pdf.as_vec3() * factor;
-            let strength = colour.max_element();
-            let strength = if strength > 0.0 && strength.is_finite() { strength } else { 0.0 };
-            Candidate { t, toward: sample.toward, distance: sample.distance, colour, strength }
+        let light = &scene.lights[number];
+        let lamp = &self.0[number];
+        let distances = Distances::new(lamp.place.as_ref(), stretch);
+        let t = distances.draw::<N>(random.f32x2());
+        let u = random.f32x2();
+        let points = match light {
+            Light::Area(area) => Points::of_lamp(area, ray, &t, u),
+            Light::Point(point) => Points::of_point(point.position(), point.intensity(), ray, &t),
+            Light::Spot(spot) => Points::of_spot(spot, ray, &t),
+            _ => Points::at_infinity(&light.sample(ray.origin, u.map(f64::from))),
         };
-        let mut chosen = candidate(0);
-        let mut all = chosen.strength;
-        let mut u = random.f32();
-        for k in 1..CANDIDATES {
-            let next = candidate(k);
-            all += next.strength;
-            // A reservoir of one; what decides for it or against it leaves a number as good as new.
-            let share = if all > 0.0 { next.strength / all } else { 0.0 };
-            if u < share {
-                u /= share;
-                chosen = next;
-            } else {
-                u = (u - share) / (1.0 - share);
-            }
+        let phase = fog.phase.values(ray.direction.as_vec3(), &points.toward);
+        let to_light = if lamp.is_in_fog {
+            stretch.transmittances(&points.distance)
+        } else {
+            points.transmittances(fog, ray, &t)
+        };
+        let to_origin = stretch.transmittances(&t);
+        let density = distances.pdfs(&t, &to_origin);
+        let (count, probability) = (N as f32, probability as f32);
+        let mut strength = [0.0; N];
+        for k in 0..N {
+            let by_way = count * probability * density[k] * points.pdf[k];
+            let by_path = stretch.mu_t * to_origin[k] * phase[k];
+            // Over the density of distances alone: that of the point is in what arrives from there.
+            let weight = if points.pdf[k] > 0.0 { by_way / (by_way + by_path) } else { 1.0 };
+            let brought =
+                points.arriving[k] * by_path * to_light[k] * weight / (count * probability * density[k]);
+            strength[k] = if brought > 0.0 && brought < f32::INFINITY { brought } else { 0.0 };
         }
-        if all <= 0.0 || chosen.strength <= 0.0 {
+        let all: f32 = strength.iter().sum();
+        let Some(chosen) = choose(&strength, all, random.f32()) else { return Vec3::ZERO };
+        let origin = ray.at(f64::from(t[chosen]));
+        let (toward, distance) = points.seen_from(chosen, origin);
+        if scene.surfaces.stand_in(&Ray { origin, direction: toward }, distance) {
             return Vec3::ZERO;
         }
-        let shadow_ray = Ray { origin: ray.at(chosen.t), direction: chosen.toward };
-        if scene.surfaces.stand_in(&shadow_ray, chosen.distance) {
-            return Vec3::ZERO;
-        }
-        fog.albedo * chosen.colour * (all / chosen.strength)
+        fog.albedo * points.colour * all
     }
 
     /// Weight of a path that collided at the distance `t` of a way, went on with the density `pdf` over solid angle and found
@@ -146,37 +117,32 @@ impl Lamps {
         &self,
         scene: &Scene,
         number: usize,
-        (ray, stretch): (&Ray, &Stretch),
-        t: f64,
-        [pdf, light_pdf]: [f64; 2],
+        stretch: &Stretch,
+        t: f32,
+        [pdf, light_pdf, candidates]: [f64; 3],
     ) -> f64 {
-        let distances = Distances::new(self.0[number].place.as_ref(), ray, stretch);
-        let density = distances.pdf(t) * scene.light_probability(number, ray.origin);
-        let by_way = CANDIDATES as f64 * density * light_pdf;
-        let by_path = stretch.mu_t * f64::from(stretch.transmittance(t)) * pdf;
+        let distances = Distances::new(self.0[number].place.as_ref(), stretch);
+        let transmittance = stretch.transmittances(&[t]);
+        let [density] = distances.pdfs(&[t], &transmittance);
+        let chosen = scene.light_probability(number, stretch.ray.origin);
+        let by_way = candidates * f64::from(density) * chosen * light_pdf;
+        let by_path = f64::from(stretch.mu_t * transmittance[0]) * pdf;
         by_path / (by_way + by_path)
     }
 }
 
-/// A point of the light, uniform by area if it is a lamp, as it is seen from `from`.
+/// A number in proportion to the strengths, whose sum is `all`; `None` if that is 0.
 #[inline(always)]
-fn point_of(light: &Light, from: DVec3, u: [f64; 2]) -> LightSample {
-    match light {
-        Light::Area(lamp) => match lamp.point(u) {
-            Some(point) => lamp.see(from, &point),
-            None => light.sample(from, u),
-        },
-        _ => light.sample(from, u),
+fn choose<const N: usize>(strength: &[f32; N], all: f32, u: f32) -> Option<usize> {
+    let (mut rest, mut chosen) = (u * all, None);
+    for (k, &strength) in strength.iter().enumerate() {
+        if strength > 0.0 {
+            chosen = Some(k);
+            if rest < strength {
+                break;
+            }
+            rest -= strength;
+        }
     }
-}
-
-/// The numbers of candidate `k`: `u` moved on by multiples of the inverse of the plastic number and its square, which spreads
-/// them evenly (Roberts 2018, the sequence R₂).
-#[inline(always)]
-fn spread(u: [f32; 2], k: usize) -> [f64; 2] {
-    let moved = |u: f32, step: f64| {
-        let u = f64::from(u) + step * k as f64;
-        u - u.floor()
-    };
-    [moved(u[0], 0.754_877_666_246_693), moved(u[1], 0.569_840_290_998_053)]
+    chosen
 }

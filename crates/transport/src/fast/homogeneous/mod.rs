@@ -14,6 +14,7 @@
 
 mod distances;
 mod lit_way;
+mod points;
 mod stretch;
 
 use glam::{DVec3, Vec3};
@@ -34,6 +35,10 @@ use crate::way::is_plain;
 
 /// Throughput below which roulette is played; survivors get twice this.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
+
+/// Candidates for light scattered once towards the camera, and on later rays.
+const FIRST: usize = 8;
+const LATER: usize = 4;
 
 /// A scene that is one homogeneous medium, or none, among surfaces that stop every ray.
 pub(super) struct Homogeneous<'a> {
@@ -108,7 +113,7 @@ impl<'a> Homogeneous<'a> {
             let hit = scene.surfaces.intersect(&path.ray, f64::INFINITY);
             let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
             let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
-            let through = path.throughput * stretch.through();
+            let through = path.throughput * stretch.through;
             let found = match &hit {
                 Some(hit) => self.lamp(hit, &path),
                 None => self.surroundings(&path),
@@ -117,13 +122,17 @@ impl<'a> Homogeneous<'a> {
 
             let collision = stretch.collision(random);
             if turns == 0 {
+                let collision = collision.map(|t| stretch.start + f64::from(t));
                 layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
             }
             if !may_turn {
                 break;
             }
             if let Some(fog) = &self.fog {
-                let lit = self.lamps.in_scattered(scene, fog, &stretch, &path.ray, random);
+                let lit = match turns {
+                    0 => self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random),
+                    _ => self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random),
+                };
                 layers.add(scatterings + 1, path.throughput * lit);
             }
             let vertex = hit.map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
@@ -142,8 +151,9 @@ impl<'a> Homogeneous<'a> {
                     let before = path.ray.direction.as_vec3();
                     let onward = fog.phase.sample(before, random.f32x2());
                     let pdf = f64::from(fog.phase.value(before, onward));
-                    let position = path.ray.at(t);
-                    path.turn = Turn::Collision { ray: path.ray, stretch, t, pdf };
+                    let position = stretch.ray.at(f64::from(t));
+                    let candidates = if turns == 1 { FIRST } else { LATER };
+                    path.turn = Turn::Collision { stretch, t, pdf, candidates };
                     path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
                 }
                 (_, _, Some(vertex)) => {
@@ -181,7 +191,7 @@ impl<'a> Homogeneous<'a> {
         if self.scene.surfaces.stand_in(&ray, distance) {
             return Vec3::ZERO;
         }
-        unshadowed * Stretch::new(self.fog.as_ref(), &ray, distance).through()
+        unshadowed * self.fog.as_ref().map_or(1.0, |fog| fog.transmittance(&ray, distance))
     }
 
     /// Radiance of the lamp, if it is one, that the path meets, with its weight.
@@ -189,12 +199,13 @@ impl<'a> Homogeneous<'a> {
     fn lamp(&self, hit: &Hit, path: &Path) -> Vec3 {
         let Some((number, lamp)) = self.scene.lamp(hit) else { return Vec3::ZERO };
         let direction = path.ray.direction;
-        let Turn::Collision { ray, stretch, t, pdf } = &path.turn else {
+        let Turn::Collision { stretch, t, pdf, candidates } = &path.turn else {
             return found_light::lamp(self.scene, hit, direction, path.turned()).as_vec3();
         };
         let cos = direction.dot(hit.normal).abs();
         let light_pdf = hit.position.distance_squared(path.ray.origin) / (cos * lamp.area());
-        let weight = self.lamps.path_weight(self.scene, number, (ray, stretch), *t, [*pdf, light_pdf]);
+        let densities = [*pdf, light_pdf, *candidates as f64];
+        let weight = self.lamps.path_weight(self.scene, number, stretch, *t, densities);
         (lamp.radiance_from(hit.normal, direction) * weight).as_vec3()
     }
 
@@ -206,9 +217,10 @@ impl<'a> Homogeneous<'a> {
         for &number in &self.infinite {
             let light = &self.scene.lights[number];
             let weight = match &path.turn {
-                Turn::Collision { ray, stretch, t, pdf } => {
+                Turn::Collision { stretch, t, pdf, candidates } => {
                     let light_pdf = light.pdf(direction);
-                    self.lamps.path_weight(self.scene, number, (ray, stretch), *t, [*pdf, light_pdf])
+                    let densities = [*pdf, light_pdf, *candidates as f64];
+                    self.lamps.path_weight(self.scene, number, stretch, *t, densities)
                 }
                 _ => found_light::weight(self.scene, number, path.turned(), |_| light.pdf(direction)),
             };
@@ -243,8 +255,8 @@ enum Turn {
     None,
     /// At a surface, with this density into its direction.
     Surface { from: DVec3, pdf: f64 },
-    /// At the distance `t` along a ray through a stretch of the medium.
-    Collision { ray: Ray, stretch: Stretch, t: f64, pdf: f64 },
+    /// At the distance `t` in a stretch of the medium, on which so many candidates were looked at.
+    Collision { stretch: Stretch, t: f32, pdf: f64, candidates: usize },
 }
 
 impl Path {
