@@ -65,6 +65,11 @@ impl SurfaceVertex {
         self.bsdf.is_delta()
     }
 
+    /// Whether light is only reflected, and into all directions.
+    pub fn is_matte(&self) -> bool {
+        matches!(self.bsdf, Bsdf::Diffuse { .. } | Bsdf::RoughDiffuse(_))
+    }
+
     /// f |cos θ| towards `direction` in each channel, without mirrors.
     pub fn value(&self, direction: DVec3) -> DVec4 {
         if self.is_two_faced(direction) {

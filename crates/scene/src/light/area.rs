@@ -20,6 +20,7 @@ pub struct AreaLight {
     primitives: Vec<WorldPrimitive>,
     /// The only primitive, if that is a rectangle.
     rectangle: Option<Rectangle>,
+    middle: DVec3,
     /// Area of all primitives up to and with each.
     cumulative_area: Vec<f64>,
     radiance: DVec3,
@@ -49,12 +50,23 @@ impl AreaLight {
             [WorldPrimitive::Parallelogram { corner, u, v }] => Rectangle::new(*corner, *u, *v),
             _ => None,
         };
-        Self { primitives, rectangle, cumulative_area, radiance, two_sided }
+        let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let [min, max] = primitives.iter().fold(empty, |[least, most], primitive| {
+            let [min, max] = primitive.bounds();
+            [least.min(min), most.max(max)]
+        });
+        let middle = (min + max) * 0.5;
+        Self { primitives, rectangle, middle, cumulative_area, radiance, two_sided }
     }
 
     /// The area, in squared scene units; 0 for a lamp that cannot be sampled.
     pub fn area(&self) -> f64 {
         self.cumulative_area.last().copied().unwrap_or(0.0)
+    }
+
+    /// The middle of a box around it.
+    pub fn middle(&self) -> DVec3 {
+        self.middle
     }
 
     /// The pieces of its surface.
@@ -95,7 +107,8 @@ impl AreaLight {
         }
     }
 
-    pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
+    /// As [`Light::sample`](super::Light::sample).
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
         match self.view(from) {
             View::Nothing => LightSample::NONE,
             View::Sphere(cone) => {

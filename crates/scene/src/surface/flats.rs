@@ -7,6 +7,7 @@
 
 use glam::DAffine3;
 
+use super::Meeting;
 use super::local::LocalHit;
 use crate::Ray;
 
@@ -52,24 +53,27 @@ impl Flats {
 
     /// The shape that `ray` meets first before `end`, and where.
     #[inline(always)]
-    pub fn intersect(&self, ray: &Ray, end: f64) -> Option<(usize, LocalHit)> {
-        let (mut nearest, mut found) = (end, None);
+    pub fn intersect(&self, ray: &Ray, end: f64) -> Option<Meeting> {
+        let (mut nearest, mut shape, mut enters) = (end, usize::MAX, false);
         for group in &self.groups {
             let (t, down) = group.distances(ray);
             for lane in 0..GROUP {
-                if t[lane] < nearest {
-                    nearest = t[lane];
-                    found = Some((group.shape[lane], LocalHit::new(nearest, 0, down[lane] < 0.0)));
-                }
+                let is_nearer = t[lane] < nearest;
+                nearest = if is_nearer { t[lane] } else { nearest };
+                shape = if is_nearer { group.shape[lane] } else { shape };
+                enters = if is_nearer { down[lane] < 0.0 } else { enters };
             }
         }
-        found
+        (shape != usize::MAX).then(|| Meeting { shape, hit: LocalHit::new(nearest, 0, enters) })
     }
 
     /// Whether `ray` meets any of them before `end`.
     #[inline(always)]
     pub fn stand_in(&self, ray: &Ray, end: f64) -> bool {
-        self.groups.iter().any(|group| group.distances(ray).0.iter().any(|&t| t < end))
+        self.groups.iter().any(|group| {
+            let (t, _) = group.distances(ray);
+            t.iter().fold(false, |is_met, &t| is_met | (t < end))
+        })
     }
 }
 
@@ -138,7 +142,7 @@ mod tests {
             let hits = placed.iter().enumerate().filter_map(|(n, one)| Some((n, one.intersect(&ray, end)?)));
             let expected = hits.min_by(|(_, a), (_, b)| a.t.total_cmp(&b.t));
             met += usize::from(expected.is_some());
-            assert_eq!(flats.intersect(&ray, end), expected);
+            assert_eq!(flats.intersect(&ray, end), expected.map(|(shape, hit)| Meeting { shape, hit }));
             assert_eq!(flats.stand_in(&ray, end), expected.is_some());
         }
         assert!((1_000..19_000).contains(&met), "{met}");

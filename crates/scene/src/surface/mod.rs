@@ -30,6 +30,7 @@ pub use self::build_material::MaterialBuilder;
 pub(crate) use self::build_material::{MOST_PARTS, conductor_index};
 use self::bvh::Bvh;
 use self::flats::Flats;
+use self::local::LocalHit;
 pub use self::material::{ConductorIndex, Material};
 pub use self::mesh::{Mesh, read_mesh, write_ply};
 pub use self::picture::Picture;
@@ -75,6 +76,25 @@ pub struct Shape {
     pub is_shadow_catcher: bool,
 }
 
+/// That a ray meets a shape, and where along the ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    shape: usize,
+    hit: LocalHit,
+}
+
+impl Meeting {
+    /// Distance along the ray.
+    pub fn distance(&self) -> f64 {
+        self.hit.t
+    }
+
+    /// Number of the shape.
+    pub fn shape(&self) -> usize {
+        self.shape
+    }
+}
+
 /// Where a ray meets a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
@@ -105,35 +125,51 @@ impl Surfaces {
     }
 
     /// The nearest surface along `ray`, of unit direction, before the distance `end`.
+    #[inline]
     pub fn intersect(&self, ray: &Ray, end: f64) -> Option<Hit> {
-        let mut nearest = self.flats.intersect(ray, end);
-        if !self.others.is_empty() {
-            let end = nearest.as_ref().map_or(end, |(_, hit)| hit.t);
-            self.tree.traverse(ray, end, |item, end| {
-                let shape = self.others[item as usize];
-                let Some(hit) = self.placed[shape].intersect(ray, end) else { return end };
-                nearest = Some((shape, hit));
-                hit.t
-            });
-        }
-        nearest.map(|(shape, hit)| self.placed[shape].hit(ray, &hit, shape))
+        self.meet(ray, end).map(|meeting| self.hit(ray, &meeting))
+    }
+
+    /// The same, without what there is to know of the place.
+    #[inline(always)]
+    pub fn meet(&self, ray: &Ray, end: f64) -> Option<Meeting> {
+        let nearest = self.flats.intersect(ray, end);
+        if self.others.is_empty() { nearest } else { self.meet_others(ray, end, nearest) }
+    }
+
+    #[inline(never)]
+    fn meet_others(&self, ray: &Ray, end: f64, nearest: Option<Meeting>) -> Option<Meeting> {
+        let mut nearest = nearest;
+        let end = nearest.as_ref().map_or(end, |meeting| meeting.hit.t);
+        self.tree.traverse(ray, end, |item, end| {
+            let shape = self.others[item as usize];
+            let Some(hit) = self.placed[shape].intersect(ray, end) else { return end };
+            nearest = Some(Meeting { shape, hit });
+            hit.t
+        });
+        nearest
+    }
+
+    /// The place where `ray` meets a surface.
+    pub fn hit(&self, ray: &Ray, meeting: &Meeting) -> Hit {
+        self.placed[meeting.shape].hit(ray, &meeting.hit, meeting.shape)
     }
 
     /// Whether any surface is in the way of `ray`, of unit direction, before the distance `end`: that of materials which let
     /// light pass as well.
-    #[inline]
+    #[inline(always)]
     pub fn stand_in(&self, ray: &Ray, end: f64) -> bool {
-        if self.flats.stand_in(ray, end) {
-            return true;
-        }
+        self.flats.stand_in(ray, end) || (!self.others.is_empty() && self.others_stand_in(ray, end))
+    }
+
+    #[inline(never)]
+    fn others_stand_in(&self, ray: &Ray, end: f64) -> bool {
         let mut is_met = false;
-        if !self.others.is_empty() {
-            self.tree.traverse(ray, end, |item, end| {
-                is_met |= self.placed[self.others[item as usize]].intersect(ray, end).is_some();
-                // No box begins before it: this ends the traversal.
-                if is_met { f64::NEG_INFINITY } else { end }
-            });
-        }
+        self.tree.traverse(ray, end, |item, end| {
+            is_met |= self.placed[self.others[item as usize]].intersect(ray, end).is_some();
+            // No box begins before it: this ends the traversal.
+            if is_met { f64::NEG_INFINITY } else { end }
+        });
         is_met
     }
 

@@ -12,6 +12,7 @@ use glam::{DVec3, Vec3};
 use tyndall_lanes::Random;
 use tyndall_scene::{Light, Ray, Scene};
 
+use super::aim::Targets;
 use super::distances::{Distances, Place};
 use super::points::Points;
 use super::stretch::{Fog, Stretch};
@@ -20,7 +21,10 @@ use super::stretch::{Fog, Stretch};
 const SOFTNESS: f64 = 0.1;
 
 /// How each light of the scene is looked for along rays.
-pub(super) struct Lamps(Vec<Lamp>);
+pub(super) struct Lamps {
+    all: Vec<Lamp>,
+    pub targets: Targets,
+}
 
 struct Lamp {
     /// Where it is; none at infinity.
@@ -51,7 +55,11 @@ impl Lamps {
             let place = Some(Place { center: (bounds[0] + bounds[1]) * 0.5, softening });
             Lamp { place, is_in_fog: fog.is_some_and(|fog| fog.holds(bounds)) }
         };
-        Self(scene.lights.iter().map(lamp).collect())
+        let all: Vec<Lamp> = scene.lights.iter().map(lamp).collect();
+        let places = all.iter().zip(&scene.light_probabilities);
+        let places: Vec<(Place, f64)> =
+            places.filter_map(|(lamp, probability)| Some((lamp.place?, *probability))).collect();
+        Self { all, targets: Targets::new(&places, fog.is_some()) }
     }
 
     /// The light of one lamp that is scattered once on the stretch of `ray`.
@@ -71,7 +79,7 @@ impl Lamps {
             return Vec3::ZERO;
         };
         let light = &scene.lights[number];
-        let lamp = &self.0[number];
+        let lamp = &self.all[number];
         let distances = Distances::new(lamp.place.as_ref(), stretch);
         let t = distances.draw::<N>(random.f32x2());
         let u = random.f32x2();
@@ -121,7 +129,7 @@ impl Lamps {
         t: f32,
         [pdf, light_pdf, candidates]: [f64; 3],
     ) -> f64 {
-        let distances = Distances::new(self.0[number].place.as_ref(), stretch);
+        let distances = Distances::new(self.all[number].place.as_ref(), stretch);
         let transmittance = stretch.transmittances(&[t]);
         let [density] = distances.pdfs(&[t], &transmittance);
         let chosen = scene.light_probability(number, stretch.ray.origin);

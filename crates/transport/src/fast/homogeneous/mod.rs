@@ -12,6 +12,7 @@
 //!
 //! There is nothing to march through, and thus no pool: one path after the other, each from its start to its end.
 
+mod aim;
 mod distances;
 mod lit_way;
 mod points;
@@ -22,23 +23,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
-use tyndall_scene::{Channels, Density, Hit, Light, Ray, Scene};
+use tyndall_scene::surface::Meeting;
+use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
 
 use self::lit_way::Lamps;
 use self::stretch::{Fog, Stretch};
-use super::sided::{Direct, draw_light};
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
 use crate::roulette::survival;
-use crate::surface_vertex::SurfaceVertex;
+use crate::surface_vertex::{SurfaceTurn, SurfaceVertex};
 use crate::way::is_plain;
 
 /// Throughput below which roulette is played; survivors get twice this.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
 
 /// Candidates for light scattered once towards the camera, and on later rays.
-const FIRST: usize = 8;
-const LATER: usize = 4;
+const FIRST: usize = 4;
+const LATER: usize = 2;
 
 /// A scene that is one homogeneous medium, or none, among surfaces that stop every ray.
 pub(super) struct Homogeneous<'a> {
@@ -110,17 +111,22 @@ impl<'a> Homogeneous<'a> {
         let (mut turns, mut scatterings) = (0, 0);
         loop {
             let may_turn = scene.max_depth.is_none_or(|depth| turns < depth);
-            let hit = scene.surfaces.intersect(&path.ray, f64::INFINITY);
-            let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
+            let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
+            let end = met.as_ref().map_or(f64::INFINITY, Meeting::distance);
             let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
             let through = path.throughput * stretch.through;
-            let found = match &hit {
-                Some(hit) => self.lamp(hit, &path),
-                None => self.surroundings(&path),
-            };
-            layers.add(scatterings, through * found);
-
+            // What the path passes by in the end need not be known, but if it shines.
             let collision = stretch.collision(random);
+            let matters = |met: &Meeting| {
+                turns == 0 || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
+            };
+            let hit = met.as_ref().filter(|met| matters(met)).map(|met| scene.surfaces.hit(&path.ray, met));
+            match &hit {
+                Some(hit) => layers.add(scatterings, through * self.lamp(hit, &path)),
+                None if met.is_none() => layers.add(scatterings, through * self.surroundings(&path)),
+                None => {}
+            }
+
             if turns == 0 {
                 let collision = collision.map(|t| stretch.start + f64::from(t));
                 layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
@@ -129,15 +135,20 @@ impl<'a> Homogeneous<'a> {
                 break;
             }
             if let Some(fog) = &self.fog {
-                let lit = match turns {
-                    0 => self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random),
-                    _ => self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random),
+                let lit = if turns == 0 {
+                    self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random)
+                } else {
+                    self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random)
                 };
                 layers.add(scatterings + 1, path.throughput * lit);
             }
-            let vertex = hit.map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
+            let vertex = hit
+                .filter(|_| turns == 0 || collision.is_none())
+                .map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
             if let Some(vertex) = &vertex {
-                layers.add(scatterings, through * self.reflected(vertex, random));
+                // Towards the camera with the weight of what gets through, later as often as the path does.
+                let weight = if turns == 0 { through } else { path.throughput };
+                layers.add(scatterings, weight * self.reflected(vertex, random));
             }
 
             turns += 1;
@@ -149,15 +160,19 @@ impl<'a> Homogeneous<'a> {
                     }
                     scatterings += 1;
                     let before = path.ray.direction.as_vec3();
-                    let onward = fog.phase.sample(before, random.f32x2());
-                    let pdf = f64::from(fog.phase.value(before, onward));
                     let position = stretch.ray.at(f64::from(t));
+                    let aim = self.lamps.targets.from(position, stretch.mu_t);
+                    let onward = aim.sample(random);
+                    let onward = onward.unwrap_or_else(|| fog.phase.sample(before, random.f32x2()));
+                    let value = fog.phase.value(before, onward);
+                    path.throughput *= value / aim.pdf(onward, value);
+                    let pdf = f64::from(value);
                     let candidates = if turns == 1 { FIRST } else { LATER };
                     path.turn = Turn::Collision { stretch, t, pdf, candidates };
                     path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
                 }
                 (_, _, Some(vertex)) => {
-                    let Some(onward) = vertex.sample(random) else { break };
+                    let Some(onward) = self.leave(vertex, random) else { break };
                     path.throughput *= onward.weight.truncate().as_vec3();
                     path.refraction *= onward.radiance_scale;
                     if !path.survives_roulette(turns, random) {
@@ -175,23 +190,47 @@ impl<'a> Homogeneous<'a> {
         layers.into_sample(|colour| colour.as_dvec3())
     }
 
+    /// How the path goes on from a surface.
+    #[inline(always)]
+    fn leave(&self, vertex: &SurfaceVertex, random: &mut Random) -> Option<SurfaceTurn> {
+        if !vertex.is_matte() {
+            return vertex.sample(random);
+        }
+        let mu_t = self.fog.as_ref().map_or(0.0, |fog| fog.mu_t);
+        let aim = self.lamps.targets.from(vertex.position(), mu_t);
+        let direction = match aim.sample(random) {
+            Some(direction) => direction.as_dvec3().normalize(),
+            None => vertex.sample(random)?.direction,
+        };
+        let pdf = vertex.pdf(direction);
+        let weight = vertex.value(direction) / f64::from(aim.pdf(direction.as_vec3(), pdf as f32));
+        (pdf > 0.0).then_some(SurfaceTurn { direction, weight, pdf: Some(pdf), radiance_scale: 1.0 })
+    }
+
     /// Light of one lamp that the surface reflects towards the path, after its way through the medium.
     #[inline(always)]
     fn reflected(&self, vertex: &SurfaceVertex, random: &mut Random) -> Vec3 {
         if vertex.is_delta() {
             return Vec3::ZERO;
         }
-        let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
-        let direct = draw_light(self.scene, vertex.position(), value, random);
-        let Some(Direct { unshadowed, toward, distance, .. }) = direct else { return Vec3::ZERO };
-        if unshadowed == Vec3::ZERO {
+        let from = vertex.position();
+        let Some((number, probability)) = self.scene.choose_light(from, random.f64()) else {
+            return Vec3::ZERO;
+        };
+        let u = [random.f64(), random.f64()];
+        let sample = points::sample(&self.scene.lights[number], from, u);
+        let LightSample { toward, distance, .. } = sample;
+        let light_pdf = probability * sample.pdf;
+        let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + vertex.pdf(toward)) };
+        let unshadowed = vertex.value(toward).truncate() * sample.radiance_over_pdf * (weight / probability);
+        if unshadowed == DVec3::ZERO {
             return Vec3::ZERO;
         }
         let ray = vertex.depart(toward);
         if self.scene.surfaces.stand_in(&ray, distance) {
             return Vec3::ZERO;
         }
-        unshadowed * self.fog.as_ref().map_or(1.0, |fog| fog.transmittance(&ray, distance))
+        unshadowed.as_vec3() * self.fog.as_ref().map_or(1.0, |fog| fog.transmittance(&ray, distance))
     }
 
     /// Radiance of the lamp, if it is one, that the path meets, with its weight.
@@ -199,13 +238,14 @@ impl<'a> Homogeneous<'a> {
     fn lamp(&self, hit: &Hit, path: &Path) -> Vec3 {
         let Some((number, lamp)) = self.scene.lamp(hit) else { return Vec3::ZERO };
         let direction = path.ray.direction;
-        let Turn::Collision { stretch, t, pdf, candidates } = &path.turn else {
-            return found_light::lamp(self.scene, hit, direction, path.turned()).as_vec3();
+        let light_pdf = |from| points::lamp_pdf(lamp, from, direction, hit);
+        let weight = match &path.turn {
+            Turn::Collision { stretch, t, pdf, candidates } => {
+                let densities = [*pdf, light_pdf(path.ray.origin), *candidates as f64];
+                self.lamps.path_weight(self.scene, number, stretch, *t, densities)
+            }
+            _ => found_light::weight(self.scene, number, path.turned(), light_pdf),
         };
-        let cos = direction.dot(hit.normal).abs();
-        let light_pdf = hit.position.distance_squared(path.ray.origin) / (cos * lamp.area());
-        let densities = [*pdf, light_pdf, *candidates as f64];
-        let weight = self.lamps.path_weight(self.scene, number, stretch, *t, densities);
         (lamp.radiance_from(hit.normal, direction) * weight).as_vec3()
     }
 

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 use tyndall_scene::light::{AreaLight, SpotLight};
-use tyndall_scene::{LightSample, Ray};
+use tyndall_scene::{Hit, Light, LightSample, Ray};
 
 use super::stretch::Fog;
 
@@ -27,6 +27,36 @@ pub(super) struct Points<const N: usize> {
 /// How much nearer than the point a shadow ray ends, relative to the coordinates: roundings must not let a lamp shadow
 /// itself.
 const SHORT: f64 = 1e-9;
+
+/// A lamp is near where its middle is, over this times its area squared.
+const NEAR: f64 = 0.5;
+
+/// Whether a lamp is so near that points of it are better drawn by solid angle than by area.
+#[inline(always)]
+fn is_near(lamp: &AreaLight, from: DVec3) -> bool {
+    lamp.middle().distance_squared(from) < NEAR * lamp.area()
+}
+
+/// Density over solid angle with which the point of a lamp at `hit` is drawn from `from`, in the `direction` to it.
+pub(super) fn lamp_pdf(lamp: &AreaLight, from: DVec3, direction: DVec3, hit: &Hit) -> f64 {
+    if is_near(lamp, from) {
+        return lamp.pdf_of_hit(from, direction, hit.position, hit.normal);
+    }
+    let cos = direction.dot(hit.normal).abs();
+    hit.position.distance_squared(from) / (cos * lamp.area())
+}
+
+/// A direction to the light from `from`: uniform by area of lamps that are not near.
+#[inline(always)]
+pub(super) fn sample(light: &Light, from: DVec3, u: [f64; 2]) -> LightSample {
+    if let Light::Area(lamp) = light
+        && !is_near(lamp, from)
+        && let Some(point) = lamp.point(u)
+    {
+        return lamp.see(from, &point);
+    }
+    light.sample(from, u)
+}
 
 impl<const N: usize> Points<N> {
     /// Points of a lamp, uniform by area.
@@ -53,7 +83,26 @@ impl<const N: usize> Points<N> {
             points.pdf[k] = pdf;
             points.arriving[k] = strength * shines / pdf;
         }
+        for k in 0..N {
+            let from = ray.at(f64::from(t[k]));
+            if is_near(lamp, from) {
+                points.draw_from(k, from, &lamp.sample(from, spread(u, k)));
+            }
+        }
         points
+    }
+
+    /// Takes a sample for the point `k`, as it is seen from `from`.
+    #[inline(never)]
+    fn draw_from(&mut self, k: usize, from: DVec3, sample: &LightSample) {
+        let toward = sample.toward.as_vec3();
+        (self.toward[0][k], self.toward[1][k], self.toward[2][k]) = (toward.x, toward.y, toward.z);
+        self.distance[k] = sample.distance as f32;
+        self.pdf[k] = sample.pdf as f32;
+        self.arriving[k] = sample.radiance_over_pdf.max_element() as f32;
+        if let Some(places) = &mut self.places {
+            places[k] = from + sample.toward * sample.distance;
+        }
     }
 
     /// A light that is a point.

@@ -11,7 +11,7 @@ use crate::fast::volume::Phase;
 /// The medium.
 pub(super) struct Fog<'a> {
     volume: &'a Volume,
-    mu_t: f32,
+    pub mu_t: f32,
     pub albedo: Vec3,
     pub phase: Phase<'a>,
 }
