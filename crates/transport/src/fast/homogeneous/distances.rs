@@ -65,7 +65,7 @@ impl Distances {
             Some(_) if thickness < THICK => 1.0,
             Some(_) => 0.5,
         };
-        let opacity = (thickness >= EVEN).then(|| 1.0 - stretch.through);
+        let opacity = (thickness >= EVEN).then_some(1.0 - stretch.through);
         Self { length, mu_t, equiangular, share, opacity }
     }
 

@@ -83,8 +83,8 @@ impl<const N: usize> Points<N> {
             points.pdf[k] = pdf;
             points.arriving[k] = strength * shines / pdf;
         }
-        for k in 0..N {
-            let from = ray.at(f64::from(t[k]));
+        for (k, &t) in t.iter().enumerate() {
+            let from = ray.at(f64::from(t));
             if is_near(lamp, from) {
                 points.draw_from(k, from, &lamp.sample(from, spread(u, k)));
             }
