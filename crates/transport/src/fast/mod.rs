@@ -9,6 +9,8 @@
 //! eight interpolated (see [`march`]), f32 relative to the scene's centre, and roulette on next-event estimation:
 //! a shadow ray whose contribution would be small is traced with a small probability and weighs the more. With a
 //! forward-peaked phase function most shadow rays are of that kind.
+//!
+//! Scenes of one homogeneous medium, or none, need no march and are traced otherwise ([`homogeneous`]).
 
 mod homogeneous;
 mod march;

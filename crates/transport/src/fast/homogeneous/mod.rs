@@ -5,10 +5,11 @@
 //!
 //!   L(x,ω) = ∫₀^z T(x,y) μs Ls(y,ω) dy + T(x,z) Lo(z,ω)
 //!
-//! every ray gets an estimate of both terms: what lamps send straight to the way through the medium and what is scattered
-//! there once ([`lit_way`]), and T times what the surface sends out and reflects of the lamps. Only where the path goes on, for
-//! light that has turned more often, is chosen: a collision, drawn with density μt T, or the surface. The reference integrator
-//! takes this choice for all of the light, and has the same mean.
+//! every ray gets an estimate of the first term as far as light is concerned that is scattered there once ([`lit_way`]), and
+//! that of a lamp or of the surroundings at its end times T; the camera's ray also T times what the surface reflects of the
+//! lamps. Only where the path goes on, for light that has turned more often, is chosen: a collision, drawn with density μt T,
+//! or the surface. Half of the directions in which it does aim at the light around lamps ([`aim`]). The reference integrator
+//! leaves all of this to chance, and has the same mean.
 //!
 //! There is nothing to march through, and thus no pool: one path after the other, each from its start to its end.
 

@@ -28,7 +28,7 @@ pub(super) struct Points<const N: usize> {
 /// itself.
 const SHORT: f64 = 1e-9;
 
-/// A lamp is near where its middle is, over this times its area squared.
+/// Squared distance to the middle of a lamp over its area, below which the lamp is near.
 const NEAR: f64 = 0.5;
 
 /// Whether a lamp is so near that points of it are better drawn by solid angle than by area.

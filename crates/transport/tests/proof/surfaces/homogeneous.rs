@@ -31,8 +31,8 @@ const WALLS: &str = r#"
     material = "grey"
     "#;
 
-#[test]
-fn a_room_of_thin_fog_under_a_lamp() {
+/// A room of thin fog with a lamp under its ceiling.
+pub fn lamp_in_fog() -> Scene {
     let lamp = r#"
         [medium]
         mu_t = 0.4
@@ -46,7 +46,12 @@ fn a_room_of_thin_fog_under_a_lamp() {
         rectangle = { corner = [-1, -0.6, -0.5], u = [0.8, 0, 0], v = [0, 0.7, 0.2] }
         material = "chequered"
         "#;
-    assert_agree("a lamp in fog", furnished(CAMERA, &format!("{WALLS}{lamp}")));
+    furnished(CAMERA, &format!("{WALLS}{lamp}"))
+}
+
+#[test]
+fn a_room_of_thin_fog_under_a_lamp() {
+    assert_agree("a lamp in fog", lamp_in_fog());
 }
 
 /// Some lamps are in the fog, others outside, and a spot shines through it; one lamp is a mesh.
