@@ -30,7 +30,7 @@ use crate::way::{Span, is_plain};
 use glam::{DVec3, Vec3};
 use march::List;
 use pool::{POOL, Path, Pixel, Rays};
-use sided::{Direct, Sided, draw_light};
+use sided::{Direct, Sided, draw_light, light_of, lights_seen_at_once};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
@@ -88,6 +88,8 @@ struct Engine<'a> {
     paths: Vec<Path>,
     /// What surfaces need of each path, if there are any.
     sided: Vec<Sided>,
+    /// Lights that are all looked at from the first surface.
+    seen_at_once: Vec<usize>,
     work: Work,
     active: usize,
 }
@@ -119,6 +121,7 @@ impl<'a> Engine<'a> {
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
             sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
+            seen_at_once: lights_seen_at_once(scene.scene),
             work: Work::default(),
             active: 0,
         }
@@ -188,7 +191,13 @@ impl<'a> Engine<'a> {
                 },
                 Next::Finish if self.rays.shadow[slot] > 0.0 => {
                     self.add_direct(slot);
-                    if self.paths[slot].throughput == Vec3::ZERO { Next::Record } else { Next::Fly }
+                    if self.next_light(slot) {
+                        Next::LookAtLight
+                    } else if self.paths[slot].throughput == Vec3::ZERO {
+                        Next::Record
+                    } else {
+                        Next::Fly
+                    }
                 }
                 Next::Finish => {
                     if self.scene.shines {
@@ -426,7 +435,19 @@ impl<'a> Engine<'a> {
         path.turns += 1;
 
         let mut traced = false;
-        if !vertex.is_delta() {
+        if path.turns == 1 && !self.seen_at_once.is_empty() {
+            for &number in &self.seen_at_once {
+                let value = |toward| (vertex.value(toward).truncate(), 0.0);
+                if let Some(Direct { unshadowed, toward, distance, .. }) =
+                    light_of(scene, (number, 1.0), vertex.position(), value, random)
+                    && unshadowed != Vec3::ZERO
+                    && sided.sees_from(scene, &vertex, toward, distance, random)
+                {
+                    sided.waiting.push((path.throughput * unshadowed, toward.as_vec3(), distance as f32));
+                }
+            }
+            path.direct_is_glow = false;
+        } else if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
             if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
                 draw_light(scene, vertex.position(), value, random)
@@ -455,11 +476,25 @@ impl<'a> Engine<'a> {
             }
             None => path.throughput = Vec3::ZERO,
         }
+        let traced = traced || self.next_light(slot);
+        let path = &self.paths[slot];
         match (traced, path.throughput == Vec3::ZERO) {
             (true, _) => Next::LookAtLight,
             (false, true) => Next::Record,
             (false, false) => Next::Fly,
         }
+    }
+
+    /// Turns to a light that waits to be looked at from the path's surface, if there is one.
+    #[inline(always)]
+    fn next_light(&mut self, slot: usize) -> bool {
+        let Some((direct, toward, distance)) = self.sided.get_mut(slot).and_then(|sided| sided.waiting.pop())
+        else {
+            return false;
+        };
+        let path = &mut self.paths[slot];
+        (path.direct, path.shadow_direction, path.light_distance) = (direct, toward, distance);
+        true
     }
 
     #[inline(always)]

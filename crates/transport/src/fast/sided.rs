@@ -10,7 +10,7 @@ use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use crate::emission::{Glow, draw_glow, path_weight, source_at};
 use crate::surface_vertex::SurfaceVertex;
-use crate::way::{Span, Way};
+use crate::way::{Span, Way, is_plain};
 
 /// What a path knows beside its place in the pool, in scenes with surfaces.
 #[derive(Debug, Clone)]
@@ -25,8 +25,24 @@ pub(super) struct Sided {
     pub shadow: Way,
     /// The part of the throughput that is due to refraction, which roulette leaves out.
     pub refraction: f64,
+    /// Lights that are still to be looked at from the surface: what each may bring, its direction and distance.
+    pub waiting: Vec<(Vec3, Vec3, f32)>,
     /// Whether the scene's surfaces are [plain](crate::way::is_plain).
     is_plain: bool,
+}
+
+/// Lights that are all looked at from the first surface, if there are no more, and no others.
+const FEW: usize = 4;
+
+/// The lights of which every one is looked at from the first surface: points and parallel light, if that is all there is, and
+/// no surface is passed through. Paths do not find these, so that no weight has to know of it.
+pub(super) fn lights_seen_at_once(scene: &Scene) -> Vec<usize> {
+    let lights = 0..scene.lights.len();
+    let drawn: Vec<usize> = lights.filter(|&light| scene.light_probabilities[light] > 0.0).collect();
+    let is_delta =
+        |&light: &usize| matches!(scene.lights[light], Light::Point(_) | Light::Spot(_) | Light::Distant(_));
+    let all = drawn.len() <= FEW && drawn.iter().all(is_delta) && is_plain(scene);
+    if all { drawn } else { Vec::new() }
 }
 
 /// What the next event at a vertex may bring.
@@ -45,7 +61,8 @@ impl Sided {
     pub fn new(is_plain: bool) -> Self {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
         let presence = Presence::default();
-        Self { ray, presence, way: Way::nothing(), shadow: Way::nothing(), refraction: 1.0, is_plain }
+        let [way, shadow] = [Way::nothing(), Way::nothing()];
+        Self { ray, presence, way, shadow, refraction: 1.0, waiting: Vec::new(), is_plain }
     }
 
     /// Where the volumes are that the current ray goes through; `None` if all are present all the way.
@@ -122,6 +139,18 @@ pub(super) fn draw_light(
     random: &mut Random,
 ) -> Option<Direct> {
     let (number, probability) = scene.choose_light(from, random.f64())?;
+    light_of(scene, (number, probability), from, value, random)
+}
+
+/// The same of the light of this number, drawn with this probability.
+#[inline(always)]
+pub(super) fn light_of(
+    scene: &Scene,
+    (number, probability): (usize, f64),
+    from: DVec3,
+    value: impl Fn(DVec3) -> (DVec3, f64),
+    random: &mut Random,
+) -> Option<Direct> {
     let light = &scene.lights[number];
     if let Light::Volume(glow) = light {
         let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
