@@ -70,7 +70,8 @@ impl<'a> Homogeneous<'a> {
         };
         let glows = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let catches = scene.surfaces.shapes.iter().any(|shape| shape.is_shadow_catcher);
-        if glows || catches || !is_plain(scene) {
+        // A tree of many lights says what matters at a place, and leaves out what may matter elsewhere on a ray.
+        if glows || catches || scene.light_tree.is_some() || !is_plain(scene) {
             return None;
         }
         let lamps = Lamps::new(scene, fog.as_ref());
