@@ -65,9 +65,9 @@ impl SurfaceVertex {
         self.bsdf.is_delta()
     }
 
-    /// Whether the surface scatters evenly, to its side and without mirrors.
-    pub fn is_matt(&self) -> bool {
-        matches!(self.bsdf, Bsdf::Diffuse { .. })
+    /// Whether light is only reflected, and into all directions.
+    pub fn is_matte(&self) -> bool {
+        matches!(self.bsdf, Bsdf::Diffuse { .. } | Bsdf::RoughDiffuse(_))
     }
 
     /// f |cos θ| towards `direction` in each channel, without mirrors.
@@ -108,7 +108,12 @@ impl SurfaceVertex {
         if goes_through {
             scene.boundaries.cross(&mut presence, &scene.surfaces, &self.hit, direction);
         }
-        (Ray { origin: self.hit.leave(direction), direction }, presence)
+        (self.depart(direction), presence)
+    }
+
+    /// A ray from the surface in `direction`, where no volumes begin or end.
+    pub fn depart(&self, direction: DVec3) -> Ray {
+        Ray { origin: self.hit.leave(direction), direction }
     }
 
     /// Whether `direction` is on one side of the surface and on the other of the bent one that shading sees. No light goes

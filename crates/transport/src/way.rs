@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use tyndall_lanes::Random;
-use tyndall_scene::surface::{Boundaries, Presence};
+use tyndall_scene::surface::{Boundaries, Material, Presence};
 use tyndall_scene::{Hit, Ray, Scene};
 
 /// A volume present between two distances.
@@ -30,7 +30,7 @@ impl Span {
 /// What a ray meets.
 #[derive(Debug, Clone)]
 pub(crate) struct Way {
-    /// Where volumes are present, in the order of volumes.
+    /// Where volumes are present.
     pub spans: Vec<Span>,
     /// The surface at which the way ends, with its distance along the whole ray.
     pub hit: Option<Hit>,
@@ -45,23 +45,37 @@ pub(crate) struct Way {
 impl Way {
     /// The way of `ray`, of unit direction, from a place where `presence` is present, up to the distance `end`.
     pub fn trace(scene: &Scene, ray: &Ray, end: f64, presence: &Presence, random: &mut Random) -> Self {
-        let surfaces = &scene.surfaces;
-        let mut way = Way { spans: Vec::new(), hit: None, end, start: presence.clone(), crossed: Vec::new() };
+        let mut way = Self::nothing();
+        way.follow(scene, ray, end, presence, random);
+        way
+    }
+
+    /// Becomes that way; takes no memory that it has not got already.
+    pub fn follow(&mut self, scene: &Scene, ray: &Ray, end: f64, presence: &Presence, random: &mut Random) {
+        self.spans.clear();
+        self.crossed.clear();
+        self.start.clone_from(presence);
+        (self.hit, self.end) = (None, end);
         let mut rest = *ray;
-        while !surfaces.is_empty() {
+        while !scene.surfaces.is_empty() {
             let passed = (rest.origin - ray.origin).dot(ray.direction);
-            let Some(mut hit) = surfaces.intersect(&rest, end - passed) else { break };
+            let Some(mut hit) = scene.surfaces.intersect(&rest, end - passed) else { break };
             hit.t += passed;
             if !passes(scene, &hit, random) {
-                way.end = hit.t;
-                way.hit = Some(hit);
+                (self.hit, self.end) = (Some(hit), hit.t);
                 break;
             }
             rest.origin = hit.leave(ray.direction);
-            way.crossed.push(hit);
+            self.crossed.push(hit);
         }
-        way.find_spans(scene, ray.direction);
-        way
+        self.find_spans(scene, ray.direction);
+    }
+
+    /// Becomes the way of `ray` among [plain](is_plain) surfaces, up to the first of them; spans are left out, as every
+    /// volume is present all the way.
+    pub fn follow_plainly(&mut self, scene: &Scene, ray: &Ray) {
+        self.hit = scene.surfaces.intersect(ray, f64::INFINITY);
+        self.end = self.hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
     }
 
     /// A way through nothing.
@@ -98,26 +112,41 @@ impl Way {
 
     fn find_spans(&mut self, scene: &Scene, direction: DVec3) {
         let boundaries: &Boundaries = &scene.boundaries;
+        let volumes = 0..scene.volumes.len();
+        let present = volumes.clone().filter(|&volume| boundaries.is_present(volume, &self.start));
+        self.spans.extend(present.map(|volume| Span { volume, start: 0.0, end: self.end }));
+        if boundaries.is_empty() || self.crossed.is_empty() {
+            return;
+        }
         let mut presence = self.start.clone();
-        let mut begins: Vec<Option<f64>> = (0..scene.volumes.len())
-            .map(|volume| boundaries.is_present(volume, &presence).then_some(0.0))
-            .collect();
-        for hit in self.crossed.iter().filter(|_| !boundaries.is_empty()) {
+        // Of the spans of a volume only the last may go on.
+        let mut open: Vec<Option<usize>> = vec![None; volumes.len()];
+        for (place, span) in self.spans.iter().enumerate() {
+            open[span.volume] = Some(place);
+        }
+        for hit in &self.crossed {
             boundaries.cross(&mut presence, &scene.surfaces, hit, direction);
-            for (volume, begin) in begins.iter_mut().enumerate() {
-                match (*begin, boundaries.is_present(volume, &presence)) {
-                    (Some(start), false) => {
-                        self.spans.push(Span { volume, start, end: hit.t });
-                        *begin = None;
+            for (volume, open) in open.iter_mut().enumerate() {
+                match (*open, boundaries.is_present(volume, &presence)) {
+                    (Some(place), false) => {
+                        self.spans[place].end = hit.t;
+                        *open = None;
                     }
-                    (None, true) => *begin = Some(hit.t),
+                    (None, true) => {
+                        *open = Some(self.spans.len());
+                        self.spans.push(Span { volume, start: hit.t, end: self.end });
+                    }
                     _ => {}
                 }
             }
         }
-        let open = begins.iter().enumerate().filter_map(|(volume, begin)| begin.map(|start| (volume, start)));
-        self.spans.extend(open.map(|(volume, start)| Span { volume, start, end: self.end }));
     }
+}
+
+/// Whether the scene's surfaces stop every ray and bound no volume.
+pub(crate) fn is_plain(scene: &Scene) -> bool {
+    let pass = scene.surfaces.materials.iter().any(Material::may_pass);
+    scene.boundaries.is_empty() && !pass
 }
 
 /// Whether the ray goes through the surface as if it were not there.

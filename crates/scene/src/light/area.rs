@@ -11,13 +11,16 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::LightSample;
-use super::spherical_rectangle::SphericalRectangle;
+use super::spherical_rectangle::{Rectangle, SphericalRectangle};
 use crate::surface::{SurfacePoint, WorldPrimitive};
 
 /// A surface that shines.
 #[derive(Debug, Clone)]
 pub struct AreaLight {
     primitives: Vec<WorldPrimitive>,
+    /// The only primitive, if that is a rectangle.
+    rectangle: Option<Rectangle>,
+    middle: DVec3,
     /// Area of all primitives up to and with each.
     cumulative_area: Vec<f64>,
     radiance: DVec3,
@@ -43,12 +46,27 @@ impl AreaLight {
         if !(area.is_finite() && area > 0.0) {
             cumulative_area.clear();
         }
-        Self { primitives, cumulative_area, radiance, two_sided }
+        let rectangle = match primitives.as_slice() {
+            [WorldPrimitive::Parallelogram { corner, u, v }] => Rectangle::new(*corner, *u, *v),
+            _ => None,
+        };
+        let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let [min, max] = primitives.iter().fold(empty, |[least, most], primitive| {
+            let [min, max] = primitive.bounds();
+            [least.min(min), most.max(max)]
+        });
+        let middle = (min + max) * 0.5;
+        Self { primitives, rectangle, middle, cumulative_area, radiance, two_sided }
     }
 
     /// The area, in squared scene units; 0 for a lamp that cannot be sampled.
     pub fn area(&self) -> f64 {
         self.cumulative_area.last().copied().unwrap_or(0.0)
+    }
+
+    /// The middle of a box around it.
+    pub fn middle(&self) -> DVec3 {
+        self.middle
     }
 
     /// The pieces of its surface.
@@ -59,6 +77,11 @@ impl AreaLight {
     /// Whether the inner side shines too.
     pub fn is_two_sided(&self) -> bool {
         self.two_sided
+    }
+
+    /// Radiance that it sends out.
+    pub fn radiance(&self) -> DVec3 {
+        self.radiance
     }
 
     /// Radiance that arrives along a ray in the unit vector `direction` which meets the lamp where its normal to the outer
@@ -84,7 +107,8 @@ impl AreaLight {
         }
     }
 
-    pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
+    /// As [`Light::sample`](super::Light::sample).
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> LightSample {
         match self.view(from) {
             View::Nothing => LightSample::NONE,
             View::Sphere(cone) => {
@@ -97,7 +121,7 @@ impl AreaLight {
                 let offset = rectangle.sample(u) - from;
                 let distance = offset.length();
                 let toward = offset / distance;
-                let normal = self.primitives[0].flat_normal().unwrap_or(DVec3::ZERO);
+                let normal = self.rectangle.as_ref().map_or(DVec3::ZERO, Rectangle::normal);
                 found(from, toward, distance, self.radiance_from(normal, toward), rectangle.pdf())
             }
             View::Area(area) => self.see(from, &self.uniform_point(area, u)),
@@ -105,6 +129,7 @@ impl AreaLight {
     }
 
     /// A point of the lamp, uniform by area; none of a lamp that cannot be sampled.
+    #[inline]
     pub fn point(&self, u: [f64; 2]) -> Option<SurfacePoint> {
         let area = self.area();
         (area > 0.0).then(|| self.uniform_point(area, u))
@@ -132,7 +157,11 @@ impl AreaLight {
         PI * self.radiance * (self.area() * sides)
     }
 
+    #[inline]
     fn uniform_point(&self, area: f64, u: [f64; 2]) -> SurfacePoint {
+        if let Some(rectangle) = &self.rectangle {
+            return SurfacePoint { position: rectangle.at(u), normal: rectangle.normal() };
+        }
         let target = u[0] * area;
         let last = self.primitives.len() - 1;
         let chosen = self.cumulative_area.partition_point(|&up_to| up_to <= target).min(last);
@@ -148,12 +177,12 @@ impl AreaLight {
         if area <= 0.0 {
             return View::Nothing;
         }
+        if let Some(rectangle) = &self.rectangle {
+            return rectangle.seen_from(from).map_or(View::Area(area), View::Rectangle);
+        }
         match self.primitives.as_slice() {
             [WorldPrimitive::Sphere { center, radius, .. }] => {
                 ConeOfSphere::new(from, *center, *radius).map_or(View::Area(area), View::Sphere)
-            }
-            [WorldPrimitive::Parallelogram { corner, u, v }] => {
-                SphericalRectangle::new(from, *corner, *u, *v).map_or(View::Area(area), View::Rectangle)
             }
             _ => View::Area(area),
         }

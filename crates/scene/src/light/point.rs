@@ -24,6 +24,11 @@ impl PointLight {
         self.position
     }
 
+    /// Power per solid angle.
+    pub fn intensity(&self) -> DVec3 {
+        self.intensity
+    }
+
     pub(super) fn sample(&self, from: DVec3) -> LightSample {
         let offset = self.position - from;
         let distance = offset.length();

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::bvh::Bvh;
 use super::closed::is_closed;
 use super::placed::{Geometry, Placed};
 use super::triangle_mesh::TriangleMesh;
@@ -88,10 +87,7 @@ pub(crate) fn build_surfaces(
             });
         }
     }
-    let bounds: Vec<_> = surfaces.placed.iter().map(Placed::bounds).collect();
-    let (bounded, planes) = (0..bounds.len()).partition(|&shape| bounds[shape].is_some());
-    (surfaces.bounded, surfaces.planes) = (bounded, planes);
-    surfaces.tree = Bvh::new(bounds.into_iter().flatten());
+    surfaces.index();
     Ok(surfaces)
 }
 

@@ -85,7 +85,8 @@ impl Bvh {
                 }
             } else {
                 let children = [node.first, node.first + 1];
-                let [left, right] = children.map(|child| slabs.distance(&self.nodes[child as usize], end));
+                let left = slabs.distance(&self.nodes[children[0] as usize], end);
+                let right = slabs.distance(&self.nodes[children[1] as usize], end);
                 let near = match (left, right) {
                     (Some(left), Some(right)) => {
                         let is_swapped = right < left;
@@ -137,12 +138,12 @@ struct Slabs {
 impl Slabs {
     fn new(ray: &Ray) -> Self {
         // Along a face 0 times infinity would be no number: no direction is exactly 0 here.
-        let direction =
-            ray.direction.to_array().map(|d| if d.abs() < 1e-300 { 1e-300_f64.copysign(d) } else { d });
+        let away = |d: f64| if d.abs() < 1e-300 { 1e-300_f64.copysign(d) } else { d };
+        let DVec3 { x, y, z } = ray.direction;
         Self {
             origin: ray.origin.to_array(),
-            inverse: direction.map(|d| 1.0 / d),
-            is_negative: direction.map(|d| d < 0.0),
+            inverse: [1.0 / away(x), 1.0 / away(y), 1.0 / away(z)],
+            is_negative: [x.is_sign_negative(), y.is_sign_negative(), z.is_sign_negative()],
         }
     }
 

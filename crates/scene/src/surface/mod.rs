@@ -8,6 +8,7 @@ mod closed;
 mod cuboid;
 mod cylinder;
 mod disc;
+mod flats;
 mod local;
 mod material;
 mod mesh;
@@ -28,6 +29,8 @@ pub(crate) use self::build::{VolumeNumber, build_surfaces, numbers_of};
 pub use self::build_material::MaterialBuilder;
 pub(crate) use self::build_material::{MOST_PARTS, conductor_index};
 use self::bvh::Bvh;
+use self::flats::Flats;
+use self::local::LocalHit;
 pub use self::material::{ConductorIndex, Material};
 pub use self::mesh::{Mesh, read_mesh, write_ply};
 pub use self::picture::Picture;
@@ -45,11 +48,13 @@ pub struct Surfaces {
     pub materials: Vec<Material>,
     /// Where the shapes are.
     placed: Vec<Placed>,
-    /// Numbers of the shapes that have an end, and a tree over them.
-    bounded: Vec<usize>,
+    /// The infinite planes, and the squares if they are few.
+    flats: Flats,
+    /// Numbers of the other shapes, and a tree over them.
+    others: Vec<usize>,
     tree: Bvh,
-    /// Numbers of the infinite planes.
-    planes: Vec<usize>,
+    /// A box around all shapes that have an end.
+    bounds: Option<[DVec3; 2]>,
 }
 
 /// One `[[shape]]`, or one of its instances.
@@ -69,6 +74,25 @@ pub struct Shape {
     pub id: u32,
     /// Whether its shadows are for a compositor.
     pub is_shadow_catcher: bool,
+}
+
+/// That a ray meets a shape, and where along the ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    shape: usize,
+    hit: LocalHit,
+}
+
+impl Meeting {
+    /// Distance along the ray.
+    pub fn distance(&self) -> f64 {
+        self.hit.t
+    }
+
+    /// Number of the shape.
+    pub fn shape(&self) -> usize {
+        self.shape
+    }
 }
 
 /// Where a ray meets a surface.
@@ -101,26 +125,80 @@ impl Surfaces {
     }
 
     /// The nearest surface along `ray`, of unit direction, before the distance `end`.
+    #[inline]
     pub fn intersect(&self, ray: &Ray, end: f64) -> Option<Hit> {
-        let (mut nearest, mut end) = (None, end);
-        for &shape in &self.planes {
-            if let Some(hit) = self.placed[shape].intersect(ray, end) {
-                end = hit.t;
-                nearest = Some((shape, hit));
-            }
-        }
+        self.meet(ray, end).map(|meeting| self.hit(ray, &meeting))
+    }
+
+    /// The same, without what there is to know of the place.
+    #[inline(always)]
+    pub fn meet(&self, ray: &Ray, end: f64) -> Option<Meeting> {
+        let nearest = self.flats.intersect(ray, end);
+        if self.others.is_empty() { nearest } else { self.meet_others(ray, end, nearest) }
+    }
+
+    #[inline(never)]
+    fn meet_others(&self, ray: &Ray, end: f64, nearest: Option<Meeting>) -> Option<Meeting> {
+        let mut nearest = nearest;
+        let end = nearest.as_ref().map_or(end, |meeting| meeting.hit.t);
         self.tree.traverse(ray, end, |item, end| {
-            let shape = self.bounded[item as usize];
+            let shape = self.others[item as usize];
             let Some(hit) = self.placed[shape].intersect(ray, end) else { return end };
-            nearest = Some((shape, hit));
+            nearest = Some(Meeting { shape, hit });
             hit.t
         });
-        nearest.map(|(shape, hit)| self.placed[shape].hit(ray, &hit, shape))
+        nearest
+    }
+
+    /// The place where `ray` meets a surface.
+    pub fn hit(&self, ray: &Ray, meeting: &Meeting) -> Hit {
+        self.placed[meeting.shape].hit(ray, &meeting.hit, meeting.shape)
+    }
+
+    /// Whether any surface is in the way of `ray`, of unit direction, before the distance `end`: that of materials which let
+    /// light pass as well.
+    #[inline(always)]
+    pub fn stand_in(&self, ray: &Ray, end: f64) -> bool {
+        self.flats.stand_in(ray, end) || (!self.others.is_empty() && self.others_stand_in(ray, end))
+    }
+
+    #[inline(never)]
+    fn others_stand_in(&self, ray: &Ray, end: f64) -> bool {
+        let mut is_met = false;
+        self.tree.traverse(ray, end, |item, end| {
+            is_met |= self.placed[self.others[item as usize]].intersect(ray, end).is_some();
+            // No box begins before it: this ends the traversal.
+            if is_met { f64::NEG_INFINITY } else { end }
+        });
+        is_met
+    }
+
+    /// Makes the shapes ready to be met by rays.
+    fn index(&mut self) {
+        let is_plane = |placed: &Placed| matches!(placed.geometry, Geometry::Plane);
+        let is_square = |placed: &Placed| matches!(placed.geometry, Geometry::Square);
+        let are_few = self.placed.iter().filter(|placed| is_square(placed)).count() <= flats::MOST;
+        let mut boxes = Vec::new();
+        for (number, placed) in self.placed.iter().enumerate() {
+            let bounds = placed.bounds();
+            if let Some([min, max]) = bounds {
+                let [least, most] = self.bounds.unwrap_or([min, max]);
+                self.bounds = Some([least.min(min), most.max(max)]);
+            }
+            match bounds {
+                Some(bounds) if !(are_few && is_square(placed)) => {
+                    self.others.push(number);
+                    boxes.push(bounds);
+                }
+                _ => self.flats.add(number, placed.to_local(), is_plane(placed)),
+            }
+        }
+        self.tree = Bvh::new(boxes.into_iter());
     }
 
     /// A box around all surfaces that have an end; `None` if there is none.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        self.tree.bounds()
+        self.bounds
     }
 
     /// Number of triangles of all meshes, each counted as often as it stands in the scene.

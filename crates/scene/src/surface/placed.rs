@@ -55,6 +55,8 @@ pub(super) struct Placed {
     pub flip: bool,
     /// A bound on how much longer local vectors are than those of the world.
     enlargement: f64,
+    /// Normal and tangent, of unit length, if they are the same everywhere.
+    even: Option<[DVec3; 2]>,
 }
 
 impl Placed {
@@ -66,7 +68,16 @@ impl Placed {
         }
         let columns = to_local.matrix3.to_cols_array();
         let enlargement = columns.iter().map(|x| x * x).sum::<f64>().sqrt();
-        Some(Self { geometry, to_world, to_local, flip, enlargement })
+        let even = matches!(geometry, Geometry::Square | Geometry::Plane).then(|| {
+            let normal = to_local.matrix3.transpose().z_axis.normalize_or(DVec3::Z);
+            [normal, to_world.matrix3.x_axis.normalize_or(normal.any_orthonormal_vector())]
+        });
+        Some(Self { geometry, to_world, to_local, flip, enlargement, even })
+    }
+
+    /// Coordinates of the world to local ones.
+    pub fn to_local(&self) -> &DAffine3 {
+        &self.to_local
     }
 
     /// Where `ray` meets it before `end`.
@@ -90,24 +101,35 @@ impl Placed {
         let offset = OFFSET * self.reach(&local_ray, hit);
         let point = self.point(&local_ray, hit, MARGIN * offset * self.enlargement);
         let to_normal = self.to_local.matrix3.transpose();
-        let mut normal = (to_normal * point.normal).normalize_or(-ray.direction);
+        let mut normal = match self.even {
+            Some([normal, _]) => normal,
+            None => (to_normal * point.normal).normalize_or(-ray.direction),
+        };
         // Where the ray grazes, rounding must not tell another story of which way it crosses.
         let cosine = ray.direction.dot(normal);
         let side = if hit.enters { -1.0 } else { 1.0 };
         if cosine * side <= 0.0 {
             normal = (normal + ray.direction * (side * LEAST_COSINE - cosine)).normalize();
         }
-        let lit_by = point.shading_normal.map_or(normal, |lit_by| (to_normal * lit_by).normalize_or(normal));
-        let same_side = lit_by.dot(normal);
-        let shading_normal = if same_side == 0.0 { normal } else { lit_by * same_side.signum() };
-        let tangent = self.to_world.transform_vector3(point.tangent);
+        let shading_normal = point.shading_normal.map_or(normal, |lit_by| {
+            let lit_by = (to_normal * lit_by).normalize_or(normal);
+            let same_side = lit_by.dot(normal);
+            if same_side == 0.0 { normal } else { lit_by * same_side.signum() }
+        });
+        let tangent = match self.even {
+            Some([_, tangent]) => tangent,
+            None => {
+                let tangent = self.to_world.transform_vector3(point.tangent);
+                tangent.normalize_or(normal.any_orthonormal_vector())
+            }
+        };
         let outwards = if self.flip { -1.0 } else { 1.0 };
         Hit {
             t: hit.t,
             position: self.to_world.transform_point3(point.position),
             normal: normal * outwards,
             shading_normal: shading_normal * outwards,
-            tangent: tangent.normalize_or(normal.any_orthonormal_vector()),
+            tangent,
             uv: point.uv,
             shape,
             primitive: hit.primitive as usize,

@@ -9,8 +9,11 @@
 //! eight interpolated (see [`march`]), f32 relative to the scene's centre, and roulette on next-event estimation:
 //! a shadow ray whose contribution would be small is traced with a small probability and weighs the more. With a
 //! forward-peaked phase function most shadow rays are of that kind.
+//!
+//! Scenes of one homogeneous medium, or none, need no march and are traced otherwise ([`homogeneous`]).
 
 mod coarse;
+mod homogeneous;
 mod light_cache;
 mod march;
 mod pool;
@@ -26,11 +29,11 @@ use crate::found_light;
 use crate::path_layers::FirstMet;
 use crate::roulette::survival;
 use crate::shadow_catcher;
-use crate::way::Span;
+use crate::way::{Span, is_plain};
 use glam::{DVec3, Vec3};
 use march::List;
 use pool::{POOL, Path, Pixel, Rays};
-use sided::{Direct, Sided, draw_light};
+use sided::{Direct, Sided, draw_light, light_of, lights_seen_at_once};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
@@ -71,19 +74,20 @@ pub(crate) fn render_tiles(
     run(scene, tiles, seed, cancel)
 }
 
+#[inline(always)]
+fn run(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
+    match (&scene.homogeneous, &scene.thin) {
+        (Some(homogeneous), _) => homogeneous.render_tiles(tiles, seed, cancel),
+        (None, Some(thin)) => thin.render_tiles(tiles, seed, cancel),
+        (None, None) => Engine::new(scene, tiles, seed).run(cancel),
+    }
+}
+
 /// The same code, compiled for wider vectors. Fused multiply-add stays off, so that the bits are the same.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn run_avx2(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
     run(scene, tiles, seed, cancel)
-}
-
-#[inline(always)]
-fn run(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-    match &scene.thin {
-        Some(thin) => thin.render_tiles(tiles, seed, cancel),
-        None => Engine::new(scene, tiles, seed).run(cancel),
-    }
 }
 
 struct Engine<'a> {
@@ -95,6 +99,8 @@ struct Engine<'a> {
     paths: Vec<Path>,
     /// What surfaces need of each path, if there are any.
     sided: Vec<Sided>,
+    /// Lights that are all looked at from the first surface.
+    seen_at_once: Vec<usize>,
     work: Work,
     active: usize,
 }
@@ -125,7 +131,8 @@ impl<'a> Engine<'a> {
             film_width: u64::from(scene.scene.resolution[0]),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
-            sided: if scene.is_sided { vec![Sided::new(); POOL] } else { Vec::new() },
+            sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
+            seen_at_once: lights_seen_at_once(scene.scene),
             work: Work::default(),
             active: 0,
         }
@@ -195,7 +202,13 @@ impl<'a> Engine<'a> {
                 },
                 Next::Finish if self.rays.shadow[slot] > 0.0 => {
                     self.add_direct(slot);
-                    if self.paths[slot].throughput == Vec3::ZERO { Next::Record } else { Next::Fly }
+                    if self.next_light(slot) {
+                        Next::LookAtLight
+                    } else if self.paths[slot].throughput == Vec3::ZERO {
+                        Next::Record
+                    } else {
+                        Next::Fly
+                    }
                 }
                 Next::Finish => {
                     if self.scene.shines {
@@ -261,7 +274,7 @@ impl<'a> Engine<'a> {
         let shadow = self.rays.shadow[slot] > 0.0;
         let path = &mut self.paths[slot];
         let direction = if shadow { path.shadow_direction } else { path.direction };
-        let spans = if self.scene.is_sided { Some(self.sided[slot].spans(shadow)) } else { None };
+        let spans = self.sided.get(slot).and_then(|sided| sided.spans(shadow));
         let count = spans.map_or(self.scene.volumes.len(), <[Span]>::len);
         for place in first..count {
             let end = path.nearest.map_or(path.ray_end, |(_, distance)| distance);
@@ -333,11 +346,12 @@ impl<'a> Engine<'a> {
         let ray = self.scene.world_ray(path.position, path.direction);
         let end = path.nearest.map_or(f64::from(path.ray_end), |(_, distance)| f64::from(distance));
         let everywhere: Vec<Span>;
-        let spans = if self.scene.is_sided {
-            self.sided[slot].spans(false)
-        } else {
-            everywhere = Span::everywhere(self.scene.volumes.len(), f64::INFINITY);
-            &everywhere
+        let spans = match self.sided.get(slot).and_then(|sided| sided.spans(false)) {
+            Some(spans) => spans,
+            None => {
+                everywhere = Span::everywhere(self.scene.volumes.len(), f64::INFINITY);
+                &everywhere
+            }
         };
         for span in spans.iter().filter(|span| span.start < end) {
             let Some(volume) = self.scene.volumes[span.volume].shines else { continue };
@@ -432,7 +446,19 @@ impl<'a> Engine<'a> {
         path.turns += 1;
 
         let mut traced = false;
-        if !vertex.is_delta() {
+        if path.turns == 1 && !self.seen_at_once.is_empty() {
+            for &number in &self.seen_at_once {
+                let value = |toward| (vertex.value(toward).truncate(), 0.0);
+                if let Some(Direct { unshadowed, toward, distance, .. }) =
+                    light_of(scene, (number, 1.0), vertex.position(), value, random)
+                    && unshadowed != Vec3::ZERO
+                    && sided.sees_from(scene, &vertex, toward, distance, random)
+                {
+                    sided.waiting.push((path.throughput * unshadowed, toward.as_vec3(), distance as f32));
+                }
+            }
+            path.direct_is_glow = false;
+        } else if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
             if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
                 draw_light(scene, vertex.position(), value, random)
@@ -461,11 +487,25 @@ impl<'a> Engine<'a> {
             }
             None => path.throughput = Vec3::ZERO,
         }
+        let traced = traced || self.next_light(slot);
+        let path = &self.paths[slot];
         match (traced, path.throughput == Vec3::ZERO) {
             (true, _) => Next::LookAtLight,
             (false, true) => Next::Record,
             (false, false) => Next::Fly,
         }
+    }
+
+    /// Turns to a light that waits to be looked at from the path's surface, if there is one.
+    #[inline(always)]
+    fn next_light(&mut self, slot: usize) -> bool {
+        let Some((direct, toward, distance)) = self.sided.get_mut(slot).and_then(|sided| sided.waiting.pop())
+        else {
+            return false;
+        };
+        let path = &mut self.paths[slot];
+        (path.direct, path.shadow_direction, path.light_distance) = (direct, toward, distance);
+        true
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use crate::emission::{Glow, draw_glow, path_weight, source_at};
 use crate::surface_vertex::SurfaceVertex;
-use crate::way::{Span, Way};
+use crate::way::{Span, Way, is_plain};
 
 /// What a path knows beside its place in the pool, in scenes with surfaces.
 #[derive(Debug, Clone)]
@@ -25,6 +25,24 @@ pub(super) struct Sided {
     pub shadow: Way,
     /// The part of the throughput that is due to refraction, which roulette leaves out.
     pub refraction: f64,
+    /// Lights that are still to be looked at from the surface: what each may bring, its direction and distance.
+    pub waiting: Vec<(Vec3, Vec3, f32)>,
+    /// Whether the scene's surfaces are [plain](crate::way::is_plain).
+    is_plain: bool,
+}
+
+/// Lights that are all looked at from the first surface, if there are no more, and no others.
+const FEW: usize = 4;
+
+/// The lights of which every one is looked at from the first surface: points and parallel light, if that is all there is, and
+/// no surface is passed through. Paths do not find these, so that no weight has to know of it.
+pub(super) fn lights_seen_at_once(scene: &Scene) -> Vec<usize> {
+    let lights = 0..scene.lights.len();
+    let drawn: Vec<usize> = lights.filter(|&light| scene.light_probabilities[light] > 0.0).collect();
+    let is_delta =
+        |&light: &usize| matches!(scene.lights[light], Light::Point(_) | Light::Spot(_) | Light::Distant(_));
+    let all = drawn.len() <= FEW && drawn.iter().all(is_delta) && is_plain(scene);
+    if all { drawn } else { Vec::new() }
 }
 
 /// What the next event at a vertex may bring.
@@ -42,20 +60,28 @@ pub(super) struct Direct {
 }
 
 impl Sided {
-    pub fn new() -> Self {
+    pub fn new(is_plain: bool) -> Self {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
         let presence = Presence::default();
-        Self { ray, presence, way: Way::nothing(), shadow: Way::nothing(), refraction: 1.0 }
+        let [way, shadow] = [Way::nothing(), Way::nothing()];
+        Self { ray, presence, way, shadow, refraction: 1.0, waiting: Vec::new(), is_plain }
     }
 
-    /// Where the volumes are that the current ray goes through.
-    pub fn spans(&self, is_shadow: bool) -> &[Span] {
-        if is_shadow { &self.shadow.spans } else { &self.way.spans }
+    /// Where the volumes are that the current ray goes through; `None` if all are present all the way.
+    pub fn spans(&self, is_shadow: bool) -> Option<&[Span]> {
+        if self.is_plain {
+            return None;
+        }
+        Some(if is_shadow { &self.shadow.spans } else { &self.way.spans })
     }
 
     /// Finds what the path's ray meets.
     pub fn look_ahead(&mut self, scene: &Scene, random: &mut Random) {
-        self.way = Way::trace(scene, &self.ray, f64::INFINITY, &self.presence, random);
+        if self.is_plain {
+            self.way.follow_plainly(scene, &self.ray);
+        } else {
+            self.way.follow(scene, &self.ray, f64::INFINITY, &self.presence, random);
+        }
     }
 
     /// Moves to the collision at the distance `t`; its place.
@@ -98,13 +124,11 @@ impl Sided {
         presence: &Presence,
         random: &mut Random,
     ) -> bool {
-        match Way::connect(scene, ray, distance, presence, random) {
-            Some(way) => {
-                self.shadow = way;
-                true
-            }
-            None => false,
+        if self.is_plain {
+            return !scene.surfaces.stand_in(ray, distance);
         }
+        self.shadow.follow(scene, ray, distance, presence, random);
+        self.shadow.hit.is_none()
     }
 }
 
@@ -117,34 +141,35 @@ pub(super) fn draw_light(
     random: &mut Random,
 ) -> Option<Direct> {
     let (number, probability) = scene.choose_light(from, random.f64())?;
-    let Light::Volume(glow) = &scene.lights[number] else {
-        return Some(draw_lamp(scene, (number, probability), from, value, random));
-    };
-    let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
-    let (value, path_pdf) = value(toward);
-    let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
-    let source = source_at(&scene.volumes[glow.volume()], position, toward);
-    let arriving = source / (density * probability);
-    let unshadowed = (value * arriving * weight).as_vec3();
-    let arriving = arriving.as_vec3();
-    Some(Direct { light: number, unshadowed, arriving, is_glow: true, toward, distance })
+    light_of(scene, (number, probability), from, value, random)
 }
 
-/// The same of the light of a number, which was chosen with a probability and is no volume.
+/// The same of the light of this number, drawn with this probability.
 #[inline(always)]
-pub(super) fn draw_lamp(
+pub(super) fn light_of(
     scene: &Scene,
     (number, probability): (usize, f64),
     from: DVec3,
     value: impl Fn(DVec3) -> (DVec3, f64),
     random: &mut Random,
-) -> Direct {
-    let sample = scene.lights[number].sample(from, [random.f64(), random.f64()]);
+) -> Option<Direct> {
+    let light = &scene.lights[number];
+    if let Light::Volume(glow) = light {
+        let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
+        let (value, path_pdf) = value(toward);
+        let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
+        let source = source_at(&scene.volumes[glow.volume()], position, toward);
+        let arriving = source / (density * probability);
+        let unshadowed = (value * arriving * weight).as_vec3();
+        let arriving = arriving.as_vec3();
+        return Some(Direct { light: number, unshadowed, arriving, is_glow: true, toward, distance });
+    }
+    let sample = light.sample(from, [random.f64(), random.f64()]);
     let (value, path_pdf) = value(sample.toward);
     let light_pdf = probability * sample.pdf;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + path_pdf) };
     let arriving = sample.radiance_over_pdf / probability;
     let unshadowed = (value * arriving * weight).as_vec3();
     let (arriving, toward) = (arriving.as_vec3(), sample.toward);
-    Direct { light: number, unshadowed, arriving, is_glow: false, toward, distance: sample.distance }
+    Some(Direct { light: number, unshadowed, arriving, is_glow: false, toward, distance: sample.distance })
 }

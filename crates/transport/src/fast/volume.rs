@@ -7,6 +7,7 @@ use tyndall_volumes::bricks::Bricks;
 use tyndall_volumes::{BrickGrid, Filter};
 
 use super::coarse::Rough;
+use super::homogeneous::Homogeneous;
 use super::light_cache::LightCache;
 use super::pool::Path;
 use super::thin::Thin;
@@ -28,6 +29,8 @@ pub(crate) struct FastScene<'a> {
     pub light_cache: Option<LightCache>,
     /// The scene as one thin grid, if it is that.
     pub(super) thin: Option<Thin<'a>>,
+    /// The scene without a pool, if it is homogeneous.
+    pub(super) homogeneous: Option<Homogeneous<'a>>,
 }
 
 pub(crate) struct FastVolume<'a> {
@@ -74,10 +77,21 @@ impl<'a> FastScene<'a> {
         let shines = volumes.iter().any(|volume| volume.shines.is_some());
         let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let is_sided = !scene.surfaces.is_empty();
+        let homogeneous = Homogeneous::new(scene);
         let rough = Rough::new(scene, centre);
         let light_cache = rough.as_ref().and_then(|rough| LightCache::new(scene, rough, centre));
         let thin = rough.as_ref().and_then(|rough| Thin::new(scene, centre, rough, light_cache.as_ref()));
-        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights, light_cache, thin }
+        FastScene {
+            scene,
+            centre,
+            volumes,
+            shines,
+            is_sided,
+            has_volume_lights,
+            light_cache,
+            thin,
+            homogeneous,
+        }
     }
 
     /// Weight of the glow that a path has found at its collision in a volume, against next-event estimation.
@@ -207,6 +221,22 @@ impl<'a> Phase<'a> {
             }
             Phase::Other(phase) => other_value(phase, before, after),
         }
+    }
+
+    /// Values for directions afterwards that are given by component.
+    #[inline(always)]
+    pub fn values<const N: usize>(self, before: Vec3, after: &[[f32; N]; 3]) -> [f32; N] {
+        let mut values = [0.0; N];
+        if let Phase::Other(phase) = self {
+            for k in 0..N {
+                values[k] = other_value(phase, before, Vec3::new(after[0][k], after[1][k], after[2][k]));
+            }
+        } else {
+            for k in 0..N {
+                values[k] = self.value(before, Vec3::new(after[0][k], after[1][k], after[2][k]));
+            }
+        }
+        values
     }
 
     #[inline(always)]

@@ -28,7 +28,7 @@ use self::glow::Glow;
 use self::profile::{LocalRay, Place, Profile};
 use super::coarse::{Lattice, Rough};
 use super::light_cache::LightCache;
-use super::sided::{Direct, draw_lamp};
+use super::sided::{Direct, light_of};
 use super::volume::{FastGrid, Phase};
 use crate::emission::source_at;
 use crate::found_light::{self, Turned};
@@ -270,7 +270,7 @@ impl<'a> Thin<'a> {
     /// The medium as a surface sees it, if it draws its directions evenly enough to be helped.
     #[inline(always)]
     fn cone(&self, vertex: &SurfaceVertex) -> Option<Cone> {
-        let ball = self.ball.as_ref().filter(|_| vertex.is_matt())?;
+        let ball = self.ball.as_ref().filter(|_| vertex.is_matte())?;
         ball.seen_from((vertex.position() - self.centre).as_vec3())
     }
 
@@ -345,7 +345,7 @@ impl<'a> Thin<'a> {
             let Some(chosen) = self.choose_light(from, choice, draw, draws) else { continue };
             let direct = match &self.scene.lights[chosen.0] {
                 Light::Volume(_) => self.draw_glow(chosen, from, &value, draws, random),
-                _ => Some(draw_lamp(self.scene, chosen, from, &value, random)),
+                _ => light_of(self.scene, chosen, from, &value, random),
             };
             let Some(Direct { unshadowed, is_glow, toward, distance, .. }) = direct else { continue };
             if unshadowed == Vec3::ZERO {

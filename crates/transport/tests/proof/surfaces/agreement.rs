@@ -144,6 +144,43 @@ fn fire_and_embers_over_a_floor() {
     assert_all_agree("fire", &fire);
 }
 
+/// Lights that are all looked at from the first surface by the fast integrator.
+#[test]
+fn smoke_over_a_floor_under_points_and_parallel_light() {
+    let smoke = furnished(
+        "{ position = [0.3, 0.6, 3.6], target = [0, -0.1, 0], vertical_fov = 38 }",
+        r#"
+        [[volume]]
+        file = "random.npy"
+        mu_t = 4
+        albedo = [0.9, 0.8, 0.6]
+        transform = { scale = 0.07, rotate = [0, 30, 0], translate = [-0.4, -0.7, -0.3] }
+        [[shape]]
+        plane = { point = [0, -0.8, 0], normal = [0, 1, 0] }
+        material = "chequered"
+        [[shape]]
+        sphere = { center = [0.7, -0.3, 0.4], radius = 0.3 }
+        material = { type = "plastic", reflectance = [0.2, 0.4, 0.8], roughness = 0.2 }
+        [[light]]
+        type = "point"
+        position = [1, 0.8, 0.5]
+        intensity = [0.8, 0.7, 0.5]
+        [[light]]
+        type = "spot"
+        position = [-0.9, 0.9, 0.5]
+        direction = [1, -1, -0.5]
+        intensity = [0.4, 1, 2]
+        angle = 40
+        inner_angle = 15
+        [[light]]
+        type = "distant"
+        direction = [-1, -1, -0.4]
+        irradiance = [0.5, 0.3, 0.1]
+        "#,
+    );
+    assert_all_agree("smoke over a floor", &smoke);
+}
+
 /// So many lamps that they are chosen by place.
 #[test]
 fn many_lamps_and_rough_materials_in_nested_volumes() {

@@ -6,6 +6,7 @@ mod agreement;
 mod estimators;
 mod fresnel_slabs;
 mod furnace;
+mod homogeneous;
 mod same_bits;
 mod volume_lights;
 

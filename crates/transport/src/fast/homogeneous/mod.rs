@@ -1,0 +1,325 @@
+//! Paths among surfaces in one homogeneous medium, or none: fog in a room, and rooms without fog.
+//!
+//! Beer's law gives the transmittance of any way here, so that hardly anything is left to chance along a ray that runs from x
+//! to a surface z. Of
+//!
+//!   L(x,ω) = ∫₀^z T(x,y) μs Ls(y,ω) dy + T(x,z) Lo(z,ω)
+//!
+//! every ray gets an estimate of the first term as far as light is concerned that is scattered there once ([`lit_way`]), and
+//! that of a lamp or of the surroundings at its end times T; the camera's ray also T times what the surface reflects of the
+//! lamps. Only where the path goes on, for light that has turned more often, is chosen: a collision, drawn with density μt T,
+//! or the surface. Half of the directions in which it does aim at the light around lamps ([`aim`]). The reference integrator
+//! leaves all of this to chance, and has the same mean.
+//!
+//! There is nothing to march through, and thus no pool: one path after the other, each from its start to its end.
+
+mod aim;
+mod distances;
+mod lit_way;
+mod points;
+mod stretch;
+
+use glam::{DVec3, Vec3};
+use std::sync::atomic::{AtomicBool, Ordering};
+use tyndall_film::{FilmTile, Sample};
+use tyndall_lanes::Random;
+use tyndall_optics::PhaseFunction;
+use tyndall_scene::surface::Meeting;
+use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
+
+use self::lit_way::Lamps;
+use self::stretch::{Fog, Stretch};
+use crate::found_light::{self, Turned};
+use crate::path_layers::{FirstMet, PathLayers};
+use crate::roulette::survival;
+use crate::surface_vertex::{SurfaceTurn, SurfaceVertex};
+use crate::way::is_plain;
+
+/// Throughput below which roulette is played; survivors get twice this.
+const ROULETTE_THROUGHPUT: f64 = 0.25;
+
+/// Candidates for light scattered once towards the camera, and on later rays.
+const FIRST: usize = 4;
+const LATER: usize = 2;
+
+/// A scene that is one homogeneous medium, or none, among surfaces that stop every ray.
+pub(super) struct Homogeneous<'a> {
+    scene: &'a Scene,
+    fog: Option<Fog<'a>>,
+    lamps: Lamps,
+    infinite: Vec<usize>,
+}
+
+impl<'a> Homogeneous<'a> {
+    /// The scene as this; `None` if it is another kind of scene.
+    pub fn new(scene: &'a Scene) -> Option<Self> {
+        let fog = match scene.volumes.as_slice() {
+            [] => None,
+            [volume] => {
+                let is_even = !matches!(volume.density, Density::Grid(_) | Density::Atmosphere { .. });
+                let is_dark =
+                    volume.medium.emission == DVec3::ZERO && volume.medium.emission_per_length == DVec3::ZERO;
+                let is_oriented = matches!(volume.medium.phase_function, PhaseFunction::Sggx(_));
+                if !is_even || !is_dark || is_oriented || volume.fields.is_some() || volume.medium.mu_t <= 0.0
+                {
+                    return None;
+                }
+                Some(Fog::new(volume))
+            }
+            _ => return None,
+        };
+        let glows = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
+        let catches = scene.surfaces.shapes.iter().any(|shape| shape.is_shadow_catcher);
+        // A tree of many lights says what matters at a place, and leaves out what may matter elsewhere on a ray.
+        if glows || catches || scene.light_tree.is_some() || !is_plain(scene) {
+            return None;
+        }
+        let lamps = Lamps::new(scene, fog.as_ref());
+        let infinite = (0..scene.lights.len()).filter(|&light| scene.lights[light].is_infinite()).collect();
+        Some(Self { scene, fog, lamps, infinite })
+    }
+
+    /// Renders all samples of `tiles`; `false` if `cancel` was set before they were complete.
+    #[inline(always)]
+    pub fn render_tiles(&self, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
+        let columns = u64::from(self.scene.resolution[0]);
+        for tile in tiles {
+            let (rect, samples) = (tile.rect(), tile.samples());
+            for y in rect.y..rect.y + rect.height {
+                if cancel.load(Ordering::Relaxed) {
+                    return false;
+                }
+                for x in rect.x..rect.x + rect.width {
+                    let pixel = u64::from(y) * columns + u64::from(x);
+                    for sample in samples.clone() {
+                        let mut random = Random::new(seed, pixel, sample);
+                        let film_u = [random.f64(), random.f64()];
+                        let lens_u = [random.f64(), random.f64()];
+                        let ray = self.scene.camera.ray([x, y], film_u, lens_u);
+                        tile.add(x, y, &self.trace(ray, &mut random));
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// One estimate of the radiance that arrives along `ray`.
+    #[inline(always)]
+    fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
+        let scene = self.scene;
+        let mut layers = PathLayers::<Vec3>::default();
+        let mut path = Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None };
+        let (mut turns, mut scatterings) = (0, 0);
+        loop {
+            let may_turn = scene.max_depth.is_none_or(|depth| turns < depth);
+            let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
+            let end = met.as_ref().map_or(f64::INFINITY, Meeting::distance);
+            let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
+            let through = path.throughput * stretch.through;
+            // What the path passes by in the end need not be known, but if it shines.
+            let collision = stretch.collision(random);
+            let matters = |met: &Meeting| {
+                turns == 0 || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
+            };
+            let hit = met.as_ref().filter(|met| matters(met)).map(|met| scene.surfaces.hit(&path.ray, met));
+            match &hit {
+                Some(hit) => layers.add(scatterings, through * self.lamp(hit, &path)),
+                None if met.is_none() => layers.add(scatterings, through * self.surroundings(&path)),
+                None => {}
+            }
+
+            if turns == 0 {
+                let collision = collision.map(|t| stretch.start + f64::from(t));
+                layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
+            }
+            if !may_turn {
+                break;
+            }
+            if let Some(fog) = &self.fog {
+                let lit = if turns == 0 {
+                    self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random)
+                } else {
+                    self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random)
+                };
+                layers.add(scatterings + 1, path.throughput * lit);
+            }
+            let vertex = hit
+                .filter(|_| turns == 0 || collision.is_none())
+                .map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
+            if let Some(vertex) = &vertex {
+                // Towards the camera with the weight of what gets through, later as often as the path does.
+                let weight = if turns == 0 { through } else { path.throughput };
+                layers.add(scatterings, weight * self.reflected(vertex, random));
+            }
+
+            turns += 1;
+            match (collision, &self.fog, &vertex) {
+                (Some(t), Some(fog), _) => {
+                    path.throughput *= fog.albedo;
+                    if !path.survives_roulette(turns, random) {
+                        break;
+                    }
+                    scatterings += 1;
+                    let before = path.ray.direction.as_vec3();
+                    let position = stretch.ray.at(f64::from(t));
+                    let aim = self.lamps.targets.from(position, stretch.mu_t);
+                    let onward = aim.sample(random);
+                    let onward = onward.unwrap_or_else(|| fog.phase.sample(before, random.f32x2()));
+                    let value = fog.phase.value(before, onward);
+                    path.throughput *= value / aim.pdf(onward, value);
+                    let pdf = f64::from(value);
+                    let candidates = if turns == 1 { FIRST } else { LATER };
+                    path.turn = Turn::Collision { stretch, t, pdf, candidates };
+                    path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
+                }
+                (_, _, Some(vertex)) => {
+                    let Some(onward) = self.leave(vertex, random) else { break };
+                    path.throughput *= onward.weight.truncate().as_vec3();
+                    path.refraction *= onward.radiance_scale;
+                    if !path.survives_roulette(turns, random) {
+                        break;
+                    }
+                    path.turn = match onward.pdf {
+                        Some(pdf) => Turn::Surface { from: vertex.position(), pdf },
+                        None => Turn::None,
+                    };
+                    path.ray = vertex.depart(onward.direction);
+                }
+                _ => break,
+            }
+        }
+        layers.into_sample(|colour| colour.as_dvec3())
+    }
+
+    /// How the path goes on from a surface.
+    #[inline(always)]
+    fn leave(&self, vertex: &SurfaceVertex, random: &mut Random) -> Option<SurfaceTurn> {
+        if !vertex.is_matte() {
+            return vertex.sample(random);
+        }
+        let mu_t = self.fog.as_ref().map_or(0.0, |fog| fog.mu_t);
+        let aim = self.lamps.targets.from(vertex.position(), mu_t);
+        let direction = match aim.sample(random) {
+            Some(direction) => direction.as_dvec3().normalize(),
+            None => vertex.sample(random)?.direction,
+        };
+        let pdf = vertex.pdf(direction);
+        let weight = vertex.value(direction) / f64::from(aim.pdf(direction.as_vec3(), pdf as f32));
+        (pdf > 0.0).then_some(SurfaceTurn { direction, weight, pdf: Some(pdf), radiance_scale: 1.0 })
+    }
+
+    /// Light of one lamp that the surface reflects towards the path, after its way through the medium.
+    #[inline(always)]
+    fn reflected(&self, vertex: &SurfaceVertex, random: &mut Random) -> Vec3 {
+        if vertex.is_delta() {
+            return Vec3::ZERO;
+        }
+        let from = vertex.position();
+        let Some((number, probability)) = self.scene.choose_light(from, random.f64()) else {
+            return Vec3::ZERO;
+        };
+        let u = [random.f64(), random.f64()];
+        let sample = points::sample(&self.scene.lights[number], from, u);
+        let LightSample { toward, distance, .. } = sample;
+        let light_pdf = probability * sample.pdf;
+        let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + vertex.pdf(toward)) };
+        let unshadowed = vertex.value(toward).truncate() * sample.radiance_over_pdf * (weight / probability);
+        if unshadowed == DVec3::ZERO {
+            return Vec3::ZERO;
+        }
+        let ray = vertex.depart(toward);
+        if self.scene.surfaces.stand_in(&ray, distance) {
+            return Vec3::ZERO;
+        }
+        unshadowed.as_vec3() * self.fog.as_ref().map_or(1.0, |fog| fog.transmittance(&ray, distance))
+    }
+
+    /// Radiance of the lamp, if it is one, that the path meets, with its weight.
+    #[inline(always)]
+    fn lamp(&self, hit: &Hit, path: &Path) -> Vec3 {
+        let Some((number, lamp)) = self.scene.lamp(hit) else { return Vec3::ZERO };
+        let direction = path.ray.direction;
+        let light_pdf = |from| points::lamp_pdf(lamp, from, direction, hit);
+        let weight = match &path.turn {
+            Turn::Collision { stretch, t, pdf, candidates } => {
+                let densities = [*pdf, light_pdf(path.ray.origin), *candidates as f64];
+                self.lamps.path_weight(self.scene, number, stretch, *t, densities)
+            }
+            _ => found_light::weight(self.scene, number, path.turned(), light_pdf),
+        };
+        (lamp.radiance_from(hit.normal, direction) * weight).as_vec3()
+    }
+
+    /// Radiance of the lights at infinity along the path, with its weight.
+    #[inline(always)]
+    fn surroundings(&self, path: &Path) -> Vec3 {
+        let mut sum = DVec3::ZERO;
+        let direction = path.ray.direction;
+        for &number in &self.infinite {
+            let light = &self.scene.lights[number];
+            let weight = match &path.turn {
+                Turn::Collision { stretch, t, pdf, candidates } => {
+                    let light_pdf = light.pdf(direction);
+                    let densities = [*pdf, light_pdf, *candidates as f64];
+                    self.lamps.path_weight(self.scene, number, stretch, *t, densities)
+                }
+                _ => found_light::weight(self.scene, number, path.turned(), |_| light.pdf(direction)),
+            };
+            sum += light.radiance(direction) * weight;
+        }
+        sum.as_vec3()
+    }
+
+    /// What a camera ray meets first.
+    #[cold]
+    fn first_met(&self, collision: Option<f64>, hit: Option<&Hit>, ray: &Ray) -> Option<FirstMet> {
+        if let (Some(distance), Some(fog)) = (collision, &self.fog) {
+            return Some(FirstMet { distance, albedo: fog.albedo.as_dvec3(), ..FirstMet::default() });
+        }
+        let vertex = SurfaceVertex::new(self.scene, hit?, ray.direction, &Channels::Rgb);
+        Some(vertex.first_met(self.scene, vertex.albedo().truncate()))
+    }
+}
+
+/// A path under way.
+struct Path {
+    ray: Ray,
+    throughput: Vec3,
+    /// The part of the throughput that is due to refraction, which roulette leaves out.
+    refraction: f64,
+    turn: Turn,
+}
+
+/// How a path turned last.
+enum Turn {
+    /// Not at all, or at a mirror: nothing else finds what it finds.
+    None,
+    /// At a surface, with this density into its direction.
+    Surface { from: DVec3, pdf: f64 },
+    /// At the distance `t` in a stretch of the medium, on which so many candidates were looked at.
+    Collision { stretch: Stretch, t: f32, pdf: f64, candidates: usize },
+}
+
+impl Path {
+    /// What found light is weighted by, but after a collision.
+    #[inline(always)]
+    fn turned(&self) -> Turned {
+        match self.turn {
+            Turn::Surface { from, pdf } => Some((from, pdf)),
+            Turn::None | Turn::Collision { .. } => None,
+        }
+    }
+
+    /// Ends a weak path with a probability that its survivors' weight makes up for.
+    #[inline(always)]
+    fn survives_roulette(&mut self, turns: u32, random: &mut Random) -> bool {
+        let strength = f64::from(self.throughput.max_element()) / self.refraction;
+        let probability = survival(strength, ROULETTE_THROUGHPUT, turns);
+        if probability < 1.0 && random.f64() >= probability {
+            return false;
+        }
+        self.throughput /= probability as f32;
+        true
+    }
+}

@@ -1,0 +1,128 @@
+//! Scenes of one homogeneous medium, or none, which the fast integrator traces with light along every ray, have the
+//! reference integrator's pictures: lamps of all kinds in, beside and outside of the fog, thin and thick.
+
+use tyndall_scene::Scene;
+use tyndall_scene::description::Integrator;
+
+use super::agreement::furnished;
+use super::{assert_same_pictures, effort};
+use crate::agreement::batches;
+
+/// Independent films of each integrator.
+const BATCHES: u64 = 16;
+
+fn assert_agree(name: &str, mut scene: Scene) {
+    for max_depth in [Some(1), None] {
+        scene.max_depth = max_depth;
+        assert!(scene.light_tree.is_none(), "{name}: so many lights are left to the pool");
+        let kinds = [Integrator::Reference, Integrator::Fast];
+        let pair = [(kinds[0], 91), (kinds[1], 92)]
+            .map(|(integrator, seed)| batches(&scene, integrator, seed, BATCHES * effort()));
+        assert_same_pictures(&format!("{name} to depth {max_depth:?}"), kinds, &pair);
+    }
+}
+
+const CAMERA: &str = "{ position = [0.2, 0.1, 1.9], target = [0, 0, 0], vertical_fov = 55 }";
+
+/// A closed room of grey walls.
+const WALLS: &str = r#"
+    [[shape]]
+    box = { min = [-1, -1, -1], max = [1, 1, 2] }
+    flip = true
+    material = "grey"
+    "#;
+
+/// A room of thin fog with a lamp under its ceiling.
+pub fn lamp_in_fog() -> Scene {
+    let lamp = r#"
+        [medium]
+        mu_t = 0.4
+        albedo = [0.95, 0.9, 0.7]
+        phase = { type = "hg", g = 0.3 }
+        [[shape]]
+        rectangle = { corner = [-0.25, 0.95, -0.25], u = [0.5, 0, 0], v = [0, 0, 0.5] }
+        material = "grey"
+        emission = { radiance = [6, 5, 3] }
+        [[shape]]
+        rectangle = { corner = [-1, -0.6, -0.5], u = [0.8, 0, 0], v = [0, 0.7, 0.2] }
+        material = "chequered"
+        "#;
+    furnished(CAMERA, &format!("{WALLS}{lamp}"))
+}
+
+#[test]
+fn a_room_of_thin_fog_under_a_lamp() {
+    assert_agree("a lamp in fog", lamp_in_fog());
+}
+
+/// One lamp is in the fog, another, a mesh, outside of it.
+#[test]
+fn a_ball_of_thick_fog_among_lamps() {
+    let objects = r#"
+        [[volume]]
+        sphere = { center = [-0.1, -0.1, 0], radius = 0.8 }
+        mu_t = 5
+        albedo = [0.9, 0.95, 0.8]
+        phase = { type = "rayleigh" }
+        [[light]]
+        type = "constant"
+        radiance = 0.1
+        [[shape]]
+        sphere = { center = [-0.2, 0.1, 0.2], radius = 0.1 }
+        material = "grey"
+        emission = { radiance = [4, 3, 8] }
+        [[shape]]
+        plane = { point = [0, -0.6, 0], normal = [0, 1, 0] }
+        material = { type = "plastic", reflectance = [0.6, 0.4, 0.2], roughness = 0.2 }
+        [[shape]]
+        mesh = { vertices = [[0.6, -0.5, 0.6], [0.9, -0.5, 0.8], [0.8, -0.5, 0.3], [0.8, 0, 0.6]], triangles = [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]] }
+        material = "grey"
+        emission = { radiance = [2, 1, 1] }
+        [[shape]]
+        sphere = { center = [0.5, 0.3, 0], radius = 0.3 }
+        material = "glass"
+        "#;
+    assert_agree("a ball of fog", furnished(CAMERA, objects));
+}
+
+#[test]
+fn thin_fog_around_points_under_the_sun_and_a_room_without_fog() {
+    let points = r#"
+        [medium]
+        mu_t = 0.7
+        albedo = [0.9, 0.8, 0.95]
+        [[light]]
+        type = "point"
+        position = [-0.3, 0.3, 0.4]
+        intensity = [0.3, 0.5, 0.2]
+        [[light]]
+        type = "spot"
+        position = [0.9, 0.9, 0.5]
+        direction = [-1, -1, -0.5]
+        intensity = [2, 1, 3]
+        angle = 30
+        inner_angle = 15
+        [[light]]
+        type = "distant"
+        direction = [-1, -1, -0.4]
+        irradiance = [0.5, 0.3, 0.1]
+        [[shape]]
+        rectangle = { corner = [-0.8, -0.5, 0.8], u = [1.6, 0, 0], v = [0, 0, -1.6] }
+        material = "chequered"
+        "#;
+    assert_agree("points in fog", furnished(CAMERA, points));
+    let clear = r#"
+        [[light]]
+        type = "point"
+        position = [-0.3, 0.3, 0.4]
+        intensity = [0.3, 0.5, 0.2]
+        [[shape]]
+        sphere = { center = [0.4, 0.3, 0.2], radius = 0.3 }
+        material = "grey"
+        emission = { radiance = [1, 2, 3] }
+        [[shape]]
+        sphere = { center = [-0.4, -0.4, 0.1], radius = 0.4 }
+        material = "mirror"
+        "#;
+    assert_agree("no fog", furnished(CAMERA, &format!("{WALLS}{clear}")));
+}
