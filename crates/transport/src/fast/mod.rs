@@ -24,9 +24,11 @@ use crate::path_layers::FirstMet;
 use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::way::Span;
+use crate::wide;
 use glam::{DVec3, Vec3};
 use march::List;
-use pool::{POOL, Path, Pixel, Rays};
+pub(crate) use pool::Pixel;
+use pool::{POOL, Path, Rays};
 use sided::{Direct, Sided, draw_light};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
@@ -52,26 +54,14 @@ pub(crate) fn render_tiles(
     seed: u64,
     cancel: &AtomicBool,
 ) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2") {
-        // SAFETY: the processor has the features, as just asked.
-        #[allow(unsafe_code)]
-        return unsafe { run_avx2(scene, tiles, seed, cancel) };
-    }
-    Engine::new(scene, tiles, seed).run(cancel)
-}
-
-/// The same code, compiled for wider vectors. Fused multiply-add stays off, so that the bits are the same.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx2(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-    Engine::new(scene, tiles, seed).run(cancel)
+    wide::run(Engine::new(scene, tiles, seed, cancel))
 }
 
 struct Engine<'a> {
     scene: &'a FastScene<'a>,
     tiles: &'a mut [FilmTile],
     seed: u64,
+    cancel: &'a AtomicBool,
     film_width: u64,
     rays: Box<Rays>,
     paths: Vec<Path>,
@@ -97,24 +87,9 @@ enum Next {
     Record,
 }
 
-impl<'a> Engine<'a> {
+impl wide::Task for Engine<'_> {
     #[inline(always)]
-    fn new(scene: &'a FastScene<'a>, tiles: &'a mut [FilmTile], seed: u64) -> Engine<'a> {
-        Engine {
-            scene,
-            tiles,
-            seed,
-            film_width: u64::from(scene.scene.resolution[0]),
-            rays: Rays::new(),
-            paths: vec![Path::default(); POOL],
-            sided: if scene.is_sided { vec![Sided::new(); POOL] } else { Vec::new() },
-            work: Work::default(),
-            active: 0,
-        }
-    }
-
-    #[inline(always)]
-    fn run(mut self, cancel: &AtomicBool) -> bool {
+    fn run(mut self) -> bool {
         self.active = POOL;
         for slot in 0..POOL {
             self.proceed(slot, Next::Start);
@@ -141,11 +116,34 @@ impl<'a> Engine<'a> {
                 self.proceed(slot, next);
             }
             round = round.wrapping_add(1);
-            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && cancel.load(Ordering::Relaxed) {
+            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && self.cancel.load(Ordering::Relaxed) {
                 return false;
             }
         }
         true
+    }
+}
+
+impl<'a> Engine<'a> {
+    #[inline(always)]
+    fn new(
+        scene: &'a FastScene<'a>,
+        tiles: &'a mut [FilmTile],
+        seed: u64,
+        cancel: &'a AtomicBool,
+    ) -> Engine<'a> {
+        Engine {
+            scene,
+            tiles,
+            seed,
+            cancel,
+            film_width: u64::from(scene.scene.resolution[0]),
+            rays: Rays::new(),
+            paths: vec![Path::default(); POOL],
+            sided: if scene.is_sided { vec![Sided::new(); POOL] } else { Vec::new() },
+            work: Work::default(),
+            active: 0,
+        }
     }
 
     /// Takes the path in `slot` through what happens to it until its ray marches again.
@@ -550,7 +548,7 @@ fn keep_from_zero(direction: Vec3) -> Vec3 {
 
 /// The samples of the tiles, one after the other.
 #[derive(Default)]
-struct Work {
+pub(crate) struct Work {
     tile: usize,
     column: u32,
     row: u32,
@@ -559,7 +557,7 @@ struct Work {
 
 impl Work {
     #[inline(always)]
-    fn next(&mut self, tiles: &[FilmTile]) -> Option<(Pixel, u64)> {
+    pub(crate) fn next(&mut self, tiles: &[FilmTile]) -> Option<(Pixel, u64)> {
         loop {
             let tile = tiles.get(self.tile)?;
             let (rect, samples) = (tile.rect(), tile.samples());
