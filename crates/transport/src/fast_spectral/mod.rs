@@ -166,7 +166,7 @@ impl<'a> Engine<'a> {
         let opacity = thickness.map(|thickness| -(-thickness).exp_m1() as f32);
         let mut background = scene.even;
         (0..CHANNELS).for_each(|c| background[c] *= transmittance[c]);
-        let witness = ((random.f64() * CHANNELS as f64) as usize).min(CHANNELS - 1);
+        let witness = ((random.f64() * scene.witnesses) as usize).min(CHANNELS - 1);
         let hit = random.f32() < opacity[witness];
         let missing = opacity.iter().filter(|&&opacity| opacity > 0.0).count() as u32;
         let open =

@@ -30,6 +30,9 @@ pub(crate) struct FastSpectralScene<'a> {
     pub(super) lights: Vec<DeltaLight>,
     /// What shines from every direction.
     pub(super) even: [f32; CHANNELS],
+    /// Channels among which one is drawn to stand for the camera's ray in the layers of depth and coverage; those beyond the
+    /// last are the last, as among the four wavelengths of three bands.
+    pub(super) witnesses: f64,
     /// Scatterings after which a path ends.
     pub(super) max_depth: u32,
 }
@@ -151,6 +154,7 @@ impl<'a> FastSpectralScene<'a> {
             phases,
             lights,
             even: even.as_vec3().to_array(),
+            witnesses: channels.count() as f64,
             max_depth: scene.max_depth.unwrap_or(u32::MAX),
         })
     }

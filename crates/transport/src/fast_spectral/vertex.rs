@@ -8,6 +8,8 @@
 //! and are divided by their sum, so that nothing underflows: what the path's own channel was likely to do has a density that
 //! f32 can hold.
 
+#![allow(clippy::needless_range_loop, reason = "all loops over lanes look alike, whatever arrays they touch")]
+
 use super::pool::{Lanes, POOL};
 use super::scene::{Boundary, CHANNELS, FastSpectralScene, Phases};
 
