@@ -85,15 +85,18 @@ fn pass(scene: &FastSpectralScene, lanes: &mut Lanes, base: usize, ended: &mut L
         collides[l] = u32::from(stays);
     }
     let greatest = scene.mu_t.iter().fold(f32::MIN_POSITIVE, |a, &b| a.max(b));
-    let mut sum = [1e-37; WIDTH];
     for c in 0..CHANNELS {
         let (mu_t, ratio) = (scene.mu_t[c], scene.mu_t[c] / greatest);
+        let transmitted = transmittance(mu_t, &length);
+        let mut factor = [0.0; WIDTH];
         for l in 0..WIDTH {
-            let collision = if collides[l] != 0 { ratio } else { 1.0 };
-            density[c][l] *= tyndall_lanes::exp(-mu_t * length[l]) * collision;
-            sum[l] += density[c][l];
+            factor[l] = transmitted[l] * if collides[l] != 0 { ratio } else { 1.0 };
+        }
+        for l in 0..WIDTH {
+            density[c][l] *= factor[l];
         }
     }
+    let sum = sum_of_channels(&density);
     normalise(&mut density, &sum);
     for axis in 0..3 {
         for l in 0..WIDTH {
@@ -113,24 +116,34 @@ fn pass(scene: &FastSpectralScene, lanes: &mut Lanes, base: usize, ended: &mut L
             found[c][l] = if collides[l] != 0 { 0.0 } else { escaped };
         }
     }
-    let mut goes_on = [0_u32; WIDTH];
-    let mut strength = [0.0_f32; WIDTH];
     for c in 0..CHANNELS {
         for l in 0..WIDTH {
-            weight[c][l] *= if collides[l] != 0 { scene.albedo[c] } else { 1.0 };
-            let light = weight[c][l] * density[c][l];
-            strength[l] = if light > strength[l] { light } else { strength[l] };
+            weight[c][l] *= scene.albedo[c];
         }
+    }
+    let mut strength = [0.0; WIDTH];
+    for l in 0..WIDTH {
+        let [a, b, c] = [0, 1, 2].map(|c| weight[c][l] * density[c][l]);
+        let most = if a > b { a } else { b };
+        strength[l] = if most > c { most } else { c };
+    }
+    let mut probability = [0.0; WIDTH];
+    for l in 0..WIDTH {
+        let by_strength = strength[l] * (0.5 * CHANNELS as f32 / ROULETTE_WEIGHT);
+        // Survivors get twice the least that lives on for certain, and so the probability leaps from 1/2 to 1 there.
+        let by_strength = if by_strength < 0.5 { by_strength } else { 1.0 };
+        let at_most = if scatterings[l] < LONG_PATH { 1.0 } else { LONG_PATH_SURVIVAL };
+        probability[l] = if by_strength < at_most { by_strength } else { at_most };
+    }
+    let mut goes_on = [0_u32; WIDTH];
+    for l in 0..WIDTH {
+        let survives = if draws.roulette[l] < probability[l] { 1 } else { 0 };
+        let may_turn = if scatterings[l] < scene.max_depth { 1 } else { 0 };
+        goes_on[l] = collides[l] & survives & may_turn;
     }
     let mut reward = [0.0; WIDTH];
     for l in 0..WIDTH {
-        let strength = strength[l] * CHANNELS as f32;
-        let by_strength = if strength < ROULETTE_WEIGHT { strength * (0.5 / ROULETTE_WEIGHT) } else { 1.0 };
-        let at_most = if scatterings[l] < LONG_PATH { 1.0 } else { LONG_PATH_SURVIVAL };
-        let probability = if by_strength < at_most { by_strength } else { at_most };
-        let survives = (draws.roulette[l] < probability) & (scatterings[l] < scene.max_depth);
-        goes_on[l] = u32::from(survives) & collides[l];
-        reward[l] = if survives { 1.0 / probability } else { 0.0 };
+        reward[l] = 1.0 / if probability[l] > 0.0 { probability[l] } else { 1.0 };
     }
     for c in 0..CHANNELS {
         for l in 0..WIDTH {
@@ -290,20 +303,32 @@ fn connect(
         cosine[l] = (direction[0][l] * x + direction[1][l] * y + direction[2][l] * z) * inverse;
     }
     let leave = way_out(scene, position, &toward);
+    let mut length = [0.0; WIDTH];
+    for l in 0..WIDTH {
+        length[l] = if distance[l] < leave[l] { distance[l] } else { leave[l] };
+    }
     let mut phase = phase_values(scene.g(0), &cosine);
     let mut direct = [[0.0; WIDTH]; CHANNELS];
     for c in 0..CHANNELS {
         if let (Phases::Each(g), 1..) = (scene.phases, c) {
             phase = phase_values(g[c], &cosine);
         }
-        let mu_t = scene.mu_t[c];
+        let transmitted = transmittance(scene.mu_t[c], &length);
         for l in 0..WIDTH {
-            let length = if distance[l] < leave[l] { distance[l] } else { leave[l] };
-            let arriving = tyndall_lanes::exp(-mu_t * length) * bright[c][l] * falloff[l];
+            let arriving = transmitted[l] * bright[c][l] * falloff[l];
             direct[c][l] = density[c][l] * phase[l] * arriving;
         }
     }
     direct
+}
+
+#[inline(always)]
+fn transmittance(mu_t: f32, length: &Group) -> Group {
+    let mut transmittance = [0.0; WIDTH];
+    for l in 0..WIDTH {
+        transmittance[l] = tyndall_lanes::exp(-mu_t * length[l]);
+    }
+    transmittance
 }
 
 /// Henyey and Greenstein's phase function, 1/sr. (1 − g)² + 2g(1 − cos) keeps its digits at the forward peak.
@@ -338,10 +363,14 @@ fn turn(
         let cos = if cos < 1.0 { cos } else { 1.0 };
         cosine[l] = if cos > -1.0 { cos } else { -1.0 };
     }
+    let (mut across, mut aside) = ([0.0; WIDTH], [0.0; WIDTH]);
     for l in 0..WIDTH {
         let sine = (1.0 - cosine[l] * cosine[l]).sqrt();
         let (sin_phi, cos_phi) = tyndall_lanes::sin_cos_turns(draws.turn[1][l]);
-        let (across, aside, ahead) = (sine * cos_phi, sine * sin_phi, cosine[l]);
+        (across[l], aside[l]) = (sine * cos_phi, sine * sin_phi);
+    }
+    for l in 0..WIDTH {
+        let (across, aside, ahead) = (across[l], aside[l], cosine[l]);
         // Two vectors at right angles to the direction (Duff et al. 2017, "Building an orthonormal basis, revisited").
         let (x, y, z) = (direction[0][l], direction[1][l], direction[2][l]);
         let sign = 1.0_f32.copysign(z);
@@ -355,16 +384,27 @@ fn turn(
         (direction[0][l], direction[1][l], direction[2][l]) = (nx * unit, ny * unit, nz * unit);
     }
     if let Phases::Each(g) = scene.phases {
-        let mut sum = [1e-37; WIDTH];
         for c in 0..CHANNELS {
             let phase = phase_values(g[c], &cosine);
             for l in 0..WIDTH {
                 density[c][l] *= phase[l];
-                sum[l] += density[c][l];
             }
         }
+        let sum = sum_of_channels(density);
         normalise(density, &sum);
     }
+}
+
+/// Never 0, so that places without a path divide by something.
+#[inline(always)]
+fn sum_of_channels(density: &[Group; CHANNELS]) -> Group {
+    let mut sum = [1e-37; WIDTH];
+    for channel in density {
+        for l in 0..WIDTH {
+            sum[l] += channel[l];
+        }
+    }
+    sum
 }
 
 #[inline(always)]
