@@ -6,7 +6,7 @@ use super::scene::CHANNELS;
 use crate::fast::Pixel;
 
 /// Paths in flight on a thread.
-pub(super) const POOL: usize = 512;
+pub(super) const POOL: usize = 128;
 
 /// State of the paths: one array for each quantity. Positions and directions are centred world space.
 pub(super) struct Lanes {

@@ -14,7 +14,7 @@ use super::pool::{Lanes, POOL};
 use super::scene::{Boundary, CHANNELS, FastSpectralScene, Phases};
 
 /// Paths in a group of vector arithmetic: two AVX2 registers of f32.
-const WIDTH: usize = 16;
+const WIDTH: usize = 128;
 
 /// Share of its light below which a path plays roulette; survivors get twice this.
 const ROULETTE_WEIGHT: f32 = 0.25;
@@ -122,10 +122,12 @@ fn pass(scene: &FastSpectralScene, lanes: &mut Lanes, base: usize, ended: &mut L
         }
     }
     let mut strength = [0.0; WIDTH];
-    for l in 0..WIDTH {
-        let [a, b, c] = [0, 1, 2].map(|c| weight[c][l] * density[c][l]);
-        let most = if a > b { a } else { b };
-        strength[l] = if most > c { most } else { c };
+    for c in 0..CHANNELS {
+        let mut light = [0.0; WIDTH];
+        for l in 0..WIDTH {
+            light[l] = weight[c][l] * density[c][l];
+        }
+        strength = greater(&strength, &light);
     }
     let mut probability = [0.0; WIDTH];
     for l in 0..WIDTH {
@@ -158,14 +160,17 @@ fn pass(scene: &FastSpectralScene, lanes: &mut Lanes, base: usize, ended: &mut L
             }
         }
     }
+    let mut once = [0.0; WIDTH];
     for l in 0..WIDTH {
         scatterings[l] += collides[l];
+        once[l] = if scatterings[l] < 2 { 1.0 } else { 0.0 };
     }
     for c in 0..CHANNELS {
         for l in 0..WIDTH {
-            let once = scatterings[l] < 2;
-            lanes.single[c][base + l] += if once { found[c][l] } else { 0.0 };
-            lanes.multiple[c][base + l] += if once { 0.0 } else { found[c][l] };
+            lanes.single[c][base + l] += found[c][l] * once[l];
+        }
+        for l in 0..WIDTH {
+            lanes.multiple[c][base + l] += found[c][l] * (1.0 - once[l]);
         }
     }
 
@@ -320,6 +325,15 @@ fn connect(
         }
     }
     direct
+}
+
+#[inline(always)]
+fn greater(a: &Group, b: &Group) -> Group {
+    let mut greater = [0.0; WIDTH];
+    for l in 0..WIDTH {
+        greater[l] = if a[l] > b[l] { a[l] } else { b[l] };
+    }
+    greater
 }
 
 #[inline(always)]
