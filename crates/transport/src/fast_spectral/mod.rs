@@ -18,9 +18,12 @@
 //! Light that comes evenly from everywhere is found by paths alone, delta lights by next-event estimation alone, and no two
 //! ways to the same light have to be weighed.
 
+mod connect;
 mod pool;
 mod scene;
+mod turn;
 mod vertex;
+mod way_out;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -5,30 +5,34 @@ use tyndall_lanes::Random;
 use super::scene::CHANNELS;
 use crate::fast::Pixel;
 
-/// Paths in flight on a thread.
+/// Paths in flight on a thread: few enough that their state, and what is computed of it on the way, stays in a core's
+/// nearest caches.
 pub(super) const POOL: usize = 128;
+
+/// A quantity of every path.
+pub(super) type Group = [f32; POOL];
 
 /// State of the paths: one array for each quantity. Positions and directions are centred world space.
 pub(super) struct Lanes {
     /// Where the path last turned, or entered the medium.
-    pub position: [[f32; POOL]; 3],
-    pub direction: [[f32; POOL]; 3],
+    pub position: [Group; 3],
+    pub direction: [Group; 3],
     /// p_c/Σp.
-    pub density: [[f32; POOL]; CHANNELS],
+    pub density: [Group; CHANNELS],
     /// A: what albedo and roulette have made of the light.
-    pub weight: [[f32; POOL]; CHANNELS],
+    pub weight: [Group; CHANNELS],
     /// 1/μt of the channel that the path is drawn for.
-    pub free_path: [f32; POOL],
+    pub free_path: Group,
     /// Mean cosine of its phase function.
-    pub g: [f32; POOL],
+    pub g: Group,
     /// On the camera's ray, the transmittance in that channel, which its flight is not to reach; then 0.
-    pub floor: [f32; POOL],
+    pub floor: Group,
     /// Scatterings so far.
     pub scatterings: [u32; POOL],
     /// Distance of the first collision from where the path entered.
-    pub first: [f32; POOL],
-    pub single: [[f32; POOL]; CHANNELS],
-    pub multiple: [[f32; POOL]; CHANNELS],
+    pub first: Group,
+    pub single: [Group; CHANNELS],
+    pub multiple: [Group; CHANNELS],
     pub random: [Random; POOL],
     /// 1 for a place with a path.
     pub active: [u32; POOL],
