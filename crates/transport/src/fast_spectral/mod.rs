@@ -5,15 +5,15 @@
 //! the pool through one at a time, in loops that the compiler turns into vector code. Between two rounds the few paths that
 //! ended make room for others.
 //!
-//! A sample is one path for each channel c in place of one for a channel drawn at random, and all of them are weighted by the
-//! balance heuristic for that many samples (Veach & Guibas 1995):
+//! A sample is some paths for each channel c in place of one for a channel drawn at random, and all of them are weighted by the
+//! balance heuristic for so many samples (Veach & Guibas 1995): with m paths a channel,
 //!
-//!   weight of λ = A_λ p_λ / Σ_c p_c,
+//!   weight of λ = A_λ p_λ / (m Σ_c p_c),
 //!
 //! which takes away the noise of that draw: most of all there is, where extinctions differ so much that a path is
 //! likely for one channel only. The paths of a sample share the camera's ray. What passes the medium unscattered is added in
 //! closed form, T_λ L_λ, and so all of them collide on that ray (forced collision): within the chord of length s their
-//! distances t have the densities μ_c exp(−μ_c t)/(1 − T_c).
+//! distances t have the densities μ_c exp(−μ_c t)/(1 − T_c), of which each of the m paths draws from one of m equal shares.
 //!
 //! Light that comes evenly from everywhere is found by paths alone, delta lights by next-event estimation alone, and no two
 //! ways to the same light have to be weighed.
@@ -31,7 +31,7 @@ use glam::Vec3;
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 
-use self::pool::{Lanes, OpenSample, OpenSamples, POOL};
+use self::pool::{Lanes, OpenSample, OpenSamples, PARTS, POOL, STRATA};
 use self::scene::CHANNELS;
 use self::vertex::List;
 use crate::fast::{Pixel, Work};
@@ -68,8 +68,8 @@ struct Engine<'a> {
 /// A sample some of whose paths have not started yet.
 struct Starting {
     number: u16,
-    /// The next channel.
-    channel: usize,
+    /// The next path.
+    part: usize,
     random: Random,
     /// Where the camera's ray enters the medium, and its direction.
     position: Vec3,
@@ -120,13 +120,13 @@ impl<'a> Engine<'a> {
     fn fill(&mut self, slot: usize) {
         let starting = loop {
             match &mut self.starting {
-                Some(starting) if starting.channel < CHANNELS => break starting,
+                Some(starting) if starting.part < PARTS => break starting,
                 _ => {}
             }
             let Some((pixel, sample)) = self.work.next(self.tiles) else { return };
             self.start(pixel, sample);
         };
-        let channel = starting.channel;
+        let (channel, stratum) = (starting.part / STRATA, starting.part % STRATA);
         let lanes = &mut *self.lanes;
         for axis in 0..3 {
             lanes.position[axis][slot] = starting.position[axis];
@@ -134,18 +134,19 @@ impl<'a> Engine<'a> {
         }
         for c in 0..CHANNELS {
             lanes.density[c][slot] = starting.density[c];
-            lanes.weight[c][slot] = starting.opacity[c];
+            lanes.weight[c][slot] = starting.opacity[c] / STRATA as f32;
             lanes.single[c][slot] = 0.0;
             lanes.multiple[c][slot] = 0.0;
         }
         lanes.free_path[slot] = self.scene.mu_t[channel].recip();
         lanes.g[slot] = self.scene.g(channel);
-        lanes.floor[slot] = starting.transmittance[channel];
+        lanes.span[slot] = starting.opacity[channel] / STRATA as f32;
+        lanes.floor[slot] = starting.transmittance[channel] + stratum as f32 * lanes.span[slot];
         lanes.scatterings[slot] = 0;
-        lanes.random[slot] = Random::new(starting.random.bits(), channel as u64, 0);
+        lanes.random[slot] = Random::new(starting.random.bits(), starting.part as u64, 0);
         lanes.active[slot] = 1;
-        lanes.part[slot] = (starting.number, channel as u16);
-        starting.skip_to(channel + 1);
+        lanes.part[slot] = (starting.number, starting.part as u16);
+        starting.skip_to(starting.part + 1);
         self.active += 1;
     }
 
@@ -169,9 +170,10 @@ impl<'a> Engine<'a> {
         let opacity = thickness.map(|thickness| -(-thickness).exp_m1() as f32);
         let mut background = scene.even;
         (0..CHANNELS).for_each(|c| background[c] *= transmittance[c]);
-        let witness = ((random.f64() * scene.witnesses) as usize).min(CHANNELS - 1);
-        let hit = random.f32() < opacity[witness];
-        let missing = opacity.iter().filter(|&&opacity| opacity > 0.0).count() as u32;
+        let channel = ((random.f64() * scene.witnesses) as usize).min(CHANNELS - 1);
+        let witness = channel * STRATA + (random.f64() * STRATA as f64) as usize;
+        let hit = random.f32() < opacity[channel];
+        let missing = opacity.iter().filter(|&&opacity| opacity > 0.0).count() * STRATA;
         let open =
             OpenSample { pixel, missing, background, witness, hit, depth: enter, ..OpenSample::default() };
         if missing == 0 {
@@ -182,7 +184,7 @@ impl<'a> Engine<'a> {
         let sum: f32 = density.iter().sum();
         let mut starting = Starting {
             number: self.open.open(open),
-            channel: 0,
+            part: 0,
             random,
             position: (ray.at(enter) - scene.centre).as_vec3(),
             direction: ray.direction.as_vec3(),
@@ -199,14 +201,14 @@ impl<'a> Engine<'a> {
         let lanes = &mut *self.lanes;
         lanes.active[slot] = 0;
         self.active -= 1;
-        let (number, channel) = lanes.part[slot];
-        let channel = usize::from(channel);
+        let (number, part) = lanes.part[slot];
+        let part = usize::from(part);
         let sample = self.open.get(number);
         for c in 0..CHANNELS {
-            sample.single[channel][c] = lanes.single[c][slot];
-            sample.multiple[channel][c] = lanes.multiple[c][slot];
+            sample.single[part][c] = lanes.single[c][slot];
+            sample.multiple[part][c] = lanes.multiple[c][slot];
         }
-        if sample.witness == channel {
+        if sample.witness == part {
             sample.depth += f64::from(lanes.first[slot]);
         }
         sample.missing -= 1;
@@ -217,7 +219,7 @@ impl<'a> Engine<'a> {
     }
 
     fn record(&mut self, sample: OpenSample) {
-        let sum = |parts: [[f32; CHANNELS]; CHANNELS]| parts.into_iter().map(Vec3::from_array).sum::<Vec3>();
+        let sum = |parts: [[f32; CHANNELS]; PARTS]| parts.into_iter().map(Vec3::from_array).sum::<Vec3>();
         let (single, multiple) = (sum(sample.single), sum(sample.multiple));
         let radiance = Vec3::from_array(sample.background) + single + multiple;
         let described = Sample {
@@ -235,9 +237,9 @@ impl<'a> Engine<'a> {
 }
 
 impl Starting {
-    /// The next path to start is that of the first channel from this one on that may collide at all.
-    fn skip_to(&mut self, channel: usize) {
-        let may_collide = |channel: &usize| self.opacity[*channel] > 0.0;
-        self.channel = (channel..CHANNELS).find(may_collide).unwrap_or(CHANNELS);
+    /// The next path to start is the first from this one on whose channel may collide at all.
+    fn skip_to(&mut self, part: usize) {
+        let may_collide = |part: &usize| self.opacity[*part / STRATA] > 0.0;
+        self.part = (part..PARTS).find(may_collide).unwrap_or(PARTS);
     }
 }

@@ -9,6 +9,13 @@ use crate::fast::Pixel;
 /// nearest caches.
 pub(super) const POOL: usize = 128;
 
+/// Paths of a sample for each channel. More of them share the cost of the sample's camera ray and of the film, to which pixels
+/// beside the medium owe all of theirs, and divide the first flight among them.
+pub(super) const STRATA: usize = 4;
+
+/// Paths of a sample: those of the first channel, then those of the next.
+pub(super) const PARTS: usize = CHANNELS * STRATA;
+
 /// A quantity of every path.
 pub(super) type Group = [f32; POOL];
 
@@ -25,8 +32,10 @@ pub(super) struct Lanes {
     pub free_path: Group,
     /// Mean cosine of its phase function.
     pub g: Group,
-    /// On the camera's ray, the transmittance in that channel, which its flight is not to reach; then 0.
+    /// The flight ends where the transmittance in that channel is floor + u span: on the camera's ray its stratum above what
+    /// passes the medium, then 0 + u.
     pub floor: Group,
+    pub span: Group,
     /// Scatterings so far.
     pub scatterings: [u32; POOL],
     /// Distance of the first collision from where the path entered.
@@ -36,7 +45,7 @@ pub(super) struct Lanes {
     pub random: [Random; POOL],
     /// 1 for a place with a path.
     pub active: [u32; POOL],
-    /// Number of the sample among those that are open, and of the channel that the path is drawn for.
+    /// Number of the sample among those that are open, and of the path among its parts.
     pub part: [(u16, u16); POOL],
 }
 
@@ -51,6 +60,7 @@ impl Lanes {
             free_path: zero,
             g: zero,
             floor: zero,
+            span: [1.0; POOL],
             scatterings: [0; POOL],
             first: zero,
             single: [zero; CHANNELS],
@@ -67,13 +77,13 @@ impl Lanes {
 pub(super) struct OpenSample {
     pub pixel: Pixel,
     /// Paths that have not ended yet.
-    pub missing: u32,
+    pub missing: usize,
     /// What passes the medium unscattered.
     pub background: [f32; CHANNELS],
-    /// What each path found, scattered once and more than once. Kept apart to be added in the order of channels.
-    pub single: [[f32; CHANNELS]; CHANNELS],
-    pub multiple: [[f32; CHANNELS]; CHANNELS],
-    /// The channel whose path stands for the camera's ray in the layers of depth and coverage, and whether it would have
+    /// What each path found, scattered once and more than once. Kept apart to be added in the order of parts.
+    pub single: [[f32; CHANNELS]; PARTS],
+    pub multiple: [[f32; CHANNELS]; PARTS],
+    /// The part that stands for the camera's ray in the layers of depth and coverage, and whether it would have
     /// collided by itself.
     pub witness: usize,
     pub hit: bool,

@@ -14,7 +14,7 @@
 use tyndall_lanes::Random;
 
 use super::connect::connect;
-use super::pool::{Group, Lanes, POOL};
+use super::pool::{Group, Lanes, PARTS, POOL};
 use super::scene::{CHANNELS, FastSpectralScene};
 use super::turn::turn;
 use super::way_out::way_out;
@@ -89,12 +89,12 @@ fn fly(scene: &FastSpectralScene, lanes: &mut Lanes, u: &Group) -> [u32; POOL] {
     let mut collides = [0_u32; POOL];
     for l in 0..POOL {
         let floor = lanes.floor[l];
-        let flight = -tyndall_lanes::ln(floor + u[l] * (1.0 - floor)) * lanes.free_path[l];
-        let stays = (flight < leave[l]) | (floor > 0.0);
+        let flight = -tyndall_lanes::ln(floor + u[l] * lanes.span[l]) * lanes.free_path[l];
+        let stays = (flight < leave[l]) | (lanes.scatterings[l] == 0);
         length[l] = if flight < leave[l] { flight } else { leave[l] };
         collides[l] = u32::from(stays);
     }
-    lanes.floor = [0.0; POOL];
+    (lanes.floor, lanes.span) = ([0.0; POOL], [1.0; POOL]);
     let greatest = scene.mu_t.iter().fold(f32::MIN_POSITIVE, |a, &b| a.max(b));
     for c in 0..CHANNELS {
         let (mu_t, ratio) = (scene.mu_t[c], scene.mu_t[c] / greatest);
@@ -136,7 +136,7 @@ fn survive(scene: &FastSpectralScene, lanes: &mut Lanes, u: &Group) -> [u32; POO
     }
     let mut probability = [0.0; POOL];
     for l in 0..POOL {
-        let by_strength = strength[l] * (0.5 * CHANNELS as f32 / ROULETTE_WEIGHT);
+        let by_strength = strength[l] * (0.5 * PARTS as f32 / ROULETTE_WEIGHT);
         // Survivors get twice the least that lives on for certain, and so the probability leaps from 1/2 to 1 there.
         let by_strength = if by_strength < 0.5 { by_strength } else { 1.0 };
         let at_most = if lanes.scatterings[l] < LONG_PATH { 1.0 } else { LONG_PATH_SURVIVAL };
