@@ -1,6 +1,8 @@
 //! The scene as the lanes see it: one even medium, f32, about a centre of its own.
 
-use glam::{DAffine3, DVec3};
+use std::ops::Range;
+
+use glam::{DAffine3, DVec3, Vec3};
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::{ChannelPhases, Channels, Density, Light, Observer, Scene, Volume};
 
@@ -11,6 +13,9 @@ pub(super) const CHANNELS: usize = 3;
 
 /// Lights beyond which choosing one in every lane would cost more than the rest of the vertex.
 const MOST_LIGHTS: usize = 8;
+
+/// Numbers whose squares f32 holds with room to spare.
+const HELD: Range<f64> = 1e-15..1e15;
 
 /// A scene of one even medium under lights with closed forms.
 pub(crate) struct FastSpectralScene<'a> {
@@ -139,7 +144,12 @@ impl<'a> FastSpectralScene<'a> {
                 cumulative: cumulative as f32,
             });
         }
-        if lights.len() > MOST_LIGHTS {
+        let columns = [to_local.matrix3.x_axis, to_local.matrix3.y_axis, to_local.matrix3.z_axis];
+        let places = lights.iter().map(|light| Vec3::from_array(light.toward).as_dvec3());
+        let fits = medium.mu_t.to_array().into_iter().all(|mu_t| mu_t == 0.0 || HELD.contains(&mu_t))
+            && columns.into_iter().all(|column| HELD.contains(&column.length()))
+            && places.chain([to_local.translation]).all(|place| place.length() < HELD.end);
+        if lights.len() > MOST_LIGHTS || !fits {
             return None;
         }
         Some(Self {

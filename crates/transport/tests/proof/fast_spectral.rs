@@ -217,7 +217,11 @@ fn scenes_of_other_kinds_go_to_the_integrator_in_f64() {
             "{LIGHTS}\n[[shape]]\nplane = {{ point = [0, -1, 0], normal = [0, 1, 0] }}\nmaterial = {{ type = \"diffuse\" }}"
         ),
     );
-    let others = [glowing, two, droplets, atmosphere, image, floor, chromatic(crowd(), DVec3::ONE, None)];
+    // What f32 cannot hold the squares of.
+    let dense = chromatic(milk(), DVec3::new(1e30, 1.0, 1.0), None);
+    let far = even(MILK, "[[light]]\ntype = \"point\"\nposition = [0, 1e20, 0]\nintensity = 1e30");
+    let others =
+        [dense, far, glowing, two, droplets, atmosphere, image, floor, chromatic(crowd(), DVec3::ONE, None)];
     for (number, other) in others.iter().enumerate() {
         assert!(!knows(other), "scene {number}");
     }
