@@ -11,6 +11,7 @@ mod emission;
 mod equiangular_light;
 mod estimators;
 mod fast;
+mod fast_spectral;
 mod found_light;
 mod measure;
 mod path_layers;
@@ -25,6 +26,7 @@ mod surface_vertex;
 pub mod transmittance;
 pub mod walk;
 mod way;
+mod wide;
 
 pub use along_ray::{AlongRay, Lookups};
 pub use distance::{DistanceSampler, Flight, sample_distance};

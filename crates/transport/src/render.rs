@@ -12,13 +12,15 @@ use tyndall_scene::{Ray, Scene};
 
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
+use crate::fast_spectral::{self, FastSpectralScene};
 use crate::reference;
 use crate::spectral::SpectralIntegrator;
 
 /// How to render.
 #[derive(Debug, Clone, Copy)]
 pub struct RenderOptions {
-    /// Which integrator; a [spectral](Scene::is_spectral) scene has the spectral one, whatever stands here.
+    /// Which integrator. A [spectral](Scene::is_spectral) scene has the spectral one, or, if it is a single even medium
+    /// and the fast one is asked for, a fast one of its own.
     pub integrator: Integrator,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -97,6 +99,9 @@ impl<'a> Renderer<'a> {
                 let (seed, cancel) = (options.seed, &control.cancel);
                 let complete = match &self.engine {
                     Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
+                    Engine::FastSpectral(fast_scene) => {
+                        fast_spectral::render_tiles(fast_scene, &mut tiles, seed, cancel)
+                    }
                     Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
                         reference::trace_with(scene, options.estimators, ray, random)
                     }),
@@ -129,14 +134,21 @@ impl<'a> Renderer<'a> {
 /// The integrator that renders a scene, and the scene as it wants it.
 enum Engine<'a> {
     Fast(Box<FastScene<'a>>),
+    FastSpectral(Box<FastSpectralScene<'a>>),
     Reference,
     Spectral(Box<SpectralIntegrator<'a>>),
 }
 
 impl<'a> Engine<'a> {
     fn new(scene: &'a Scene, integrator: Integrator) -> Self {
+        if scene.is_spectral() {
+            let fast = if integrator == Integrator::Fast { FastSpectralScene::new(scene) } else { None };
+            return match fast {
+                Some(fast_scene) => Self::FastSpectral(Box::new(fast_scene)),
+                None => Self::Spectral(Box::new(SpectralIntegrator::new(scene))),
+            };
+        }
         match integrator {
-            _ if scene.is_spectral() => Self::Spectral(Box::new(SpectralIntegrator::new(scene))),
             Integrator::Fast => Self::Fast(Box::new(FastScene::new(scene))),
             Integrator::Reference => Self::Reference,
         }

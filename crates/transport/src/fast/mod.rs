@@ -16,6 +16,7 @@ mod coarse;
 mod homogeneous;
 mod light_cache;
 mod march;
+mod path_by_path;
 mod pool;
 mod sided;
 mod thin;
@@ -30,9 +31,12 @@ use crate::path_layers::FirstMet;
 use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::way::{Span, is_plain};
+use crate::wide;
 use glam::{DVec3, Vec3};
 use march::List;
-use pool::{POOL, Path, Pixel, Rays};
+use path_by_path::PathByPath;
+pub(crate) use pool::Pixel;
+use pool::{POOL, Path, Rays};
 use sided::{Direct, Sided, draw_light, light_of, lights_seen_at_once};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
@@ -65,35 +69,18 @@ pub(crate) fn render_tiles(
     seed: u64,
     cancel: &AtomicBool,
 ) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2") {
-        // SAFETY: the processor has the features, as just asked.
-        #[allow(unsafe_code)]
-        return unsafe { run_avx2(scene, tiles, seed, cancel) };
-    }
-    run(scene, tiles, seed, cancel)
-}
-
-#[inline(always)]
-fn run(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
     match (&scene.homogeneous, &scene.thin) {
-        (Some(homogeneous), _) => homogeneous.render_tiles(tiles, seed, cancel),
-        (None, Some(thin)) => thin.render_tiles(tiles, seed, cancel),
-        (None, None) => Engine::new(scene, tiles, seed).run(cancel),
+        (Some(homogeneous), _) => wide::run(PathByPath { tracer: homogeneous, tiles, seed, cancel }),
+        (None, Some(thin)) => wide::run(PathByPath { tracer: thin, tiles, seed, cancel }),
+        (None, None) => wide::run(Engine::new(scene, tiles, seed, cancel)),
     }
-}
-
-/// The same code, compiled for wider vectors. Fused multiply-add stays off, so that the bits are the same.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx2(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-    run(scene, tiles, seed, cancel)
 }
 
 struct Engine<'a> {
     scene: &'a FastScene<'a>,
     tiles: &'a mut [FilmTile],
     seed: u64,
+    cancel: &'a AtomicBool,
     film_width: u64,
     rays: Box<Rays>,
     paths: Vec<Path>,
@@ -121,25 +108,9 @@ enum Next {
     Record,
 }
 
-impl<'a> Engine<'a> {
+impl wide::Task for Engine<'_> {
     #[inline(always)]
-    fn new(scene: &'a FastScene<'a>, tiles: &'a mut [FilmTile], seed: u64) -> Engine<'a> {
-        Engine {
-            scene,
-            tiles,
-            seed,
-            film_width: u64::from(scene.scene.resolution[0]),
-            rays: Rays::new(),
-            paths: vec![Path::default(); POOL],
-            sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
-            seen_at_once: lights_seen_at_once(scene.scene),
-            work: Work::default(),
-            active: 0,
-        }
-    }
-
-    #[inline(always)]
-    fn run(mut self, cancel: &AtomicBool) -> bool {
+    fn run(mut self) -> bool {
         self.active = POOL;
         for slot in 0..POOL {
             self.proceed(slot, Next::Start);
@@ -166,11 +137,35 @@ impl<'a> Engine<'a> {
                 self.proceed(slot, next);
             }
             round = round.wrapping_add(1);
-            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && cancel.load(Ordering::Relaxed) {
+            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && self.cancel.load(Ordering::Relaxed) {
                 return false;
             }
         }
         true
+    }
+}
+
+impl<'a> Engine<'a> {
+    #[inline(always)]
+    fn new(
+        scene: &'a FastScene<'a>,
+        tiles: &'a mut [FilmTile],
+        seed: u64,
+        cancel: &'a AtomicBool,
+    ) -> Engine<'a> {
+        Engine {
+            scene,
+            tiles,
+            seed,
+            cancel,
+            film_width: u64::from(scene.scene.resolution[0]),
+            rays: Rays::new(),
+            paths: vec![Path::default(); POOL],
+            sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
+            seen_at_once: lights_seen_at_once(scene.scene),
+            work: Work::default(),
+            active: 0,
+        }
     }
 
     /// Takes the path in `slot` through what happens to it until its ray marches again.
@@ -616,7 +611,7 @@ fn keep_from_zero(direction: Vec3) -> Vec3 {
 
 /// The samples of the tiles, one after the other.
 #[derive(Default)]
-struct Work {
+pub(crate) struct Work {
     tile: usize,
     column: u32,
     row: u32,
@@ -625,7 +620,7 @@ struct Work {
 
 impl Work {
     #[inline(always)]
-    fn next(&mut self, tiles: &[FilmTile]) -> Option<(Pixel, u64)> {
+    pub(crate) fn next(&mut self, tiles: &[FilmTile]) -> Option<(Pixel, u64)> {
         loop {
             let tile = tiles.get(self.tile)?;
             let (rect, samples) = (tile.rect(), tile.samples());

@@ -137,7 +137,7 @@ impl Path {
 
 /// A pixel of the film and the number of its tile among those that are rendered.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Pixel {
+pub(crate) struct Pixel {
     pub tile: u32,
     pub x: u32,
     pub y: u32,

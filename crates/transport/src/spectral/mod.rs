@@ -424,7 +424,7 @@ impl<'a> SpectralScene<'a> {
     /// Light of a colour in the channels, from the light of this number. Lights that have no spectrum, such as images and the
     /// sky, are known in red, green and blue alone: they are the white of [`cie::white`] times a mixture of the basis of
     /// [`uplift`], which has that colour.
-    fn light(&self, number: usize, colour: DVec3) -> DVec4 {
+    pub(crate) fn light(&self, number: usize, colour: DVec3) -> DVec4 {
         match (self.channels, self.scene.light_spectra.get(number).and_then(Option::as_ref)) {
             (Channels::Wavelengths(wavelengths_nm), Some(spectrum)) => {
                 let luminance = cie::luminance(colour);

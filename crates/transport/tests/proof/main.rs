@@ -8,6 +8,7 @@ mod chromatic;
 mod effort;
 mod emission;
 mod estimators;
+mod fast_spectral;
 mod phase_functions;
 mod rendering;
 mod same_bits;

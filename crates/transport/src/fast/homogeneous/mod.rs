@@ -20,8 +20,7 @@ mod points;
 mod stretch;
 
 use glam::{DVec3, Vec3};
-use std::sync::atomic::{AtomicBool, Ordering};
-use tyndall_film::{FilmTile, Sample};
+use tyndall_film::Sample;
 use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::surface::Meeting;
@@ -29,6 +28,7 @@ use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
 
 use self::lit_way::Lamps;
 use self::stretch::{Fog, Stretch};
+use super::path_by_path::Tracer;
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
 use crate::roulette::survival;
@@ -78,35 +78,19 @@ impl<'a> Homogeneous<'a> {
         let infinite = (0..scene.lights.len()).filter(|&light| scene.lights[light].is_infinite()).collect();
         Some(Self { scene, fog, lamps, infinite })
     }
+}
 
-    /// Renders all samples of `tiles`; `false` if `cancel` was set before they were complete.
-    #[inline(always)]
-    pub fn render_tiles(&self, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-        let columns = u64::from(self.scene.resolution[0]);
-        for tile in tiles {
-            let (rect, samples) = (tile.rect(), tile.samples());
-            for y in rect.y..rect.y + rect.height {
-                if cancel.load(Ordering::Relaxed) {
-                    return false;
-                }
-                for x in rect.x..rect.x + rect.width {
-                    let pixel = u64::from(y) * columns + u64::from(x);
-                    for sample in samples.clone() {
-                        let mut random = Random::new(seed, pixel, sample);
-                        let film_u = [random.f64(), random.f64()];
-                        let lens_u = [random.f64(), random.f64()];
-                        let ray = self.scene.camera.ray([x, y], film_u, lens_u);
-                        tile.add(x, y, &self.trace(ray, &mut random));
-                    }
-                }
-            }
-        }
-        true
+impl Tracer for Homogeneous<'_> {
+    type Memory = ();
+
+    fn scene(&self) -> &Scene {
+        self.scene
     }
 
-    /// One estimate of the radiance that arrives along `ray`.
+    fn memory(&self) {}
+
     #[inline(always)]
-    fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
+    fn trace(&self, ray: Ray, (): &mut (), random: &mut Random) -> Sample {
         let scene = self.scene;
         let mut layers = PathLayers::<Vec3>::default();
         let mut path = Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None };
@@ -191,7 +175,9 @@ impl<'a> Homogeneous<'a> {
         }
         layers.into_sample(|colour| colour.as_dvec3())
     }
+}
 
+impl Homogeneous<'_> {
     /// How the path goes on from a surface.
     #[inline(always)]
     fn leave(&self, vertex: &SurfaceVertex, random: &mut Random) -> Option<SurfaceTurn> {

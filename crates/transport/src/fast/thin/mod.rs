@@ -16,8 +16,7 @@ mod glow;
 mod profile;
 
 use glam::{DVec3, DVec4, Vec3};
-use std::sync::atomic::{AtomicBool, Ordering};
-use tyndall_film::{FilmTile, Sample};
+use tyndall_film::Sample;
 use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::surface::Presence;
@@ -28,6 +27,7 @@ use self::glow::Glow;
 use self::profile::{LocalRay, Place, Profile};
 use super::coarse::{Lattice, Rough};
 use super::light_cache::LightCache;
+use super::path_by_path::Tracer;
 use super::sided::{Direct, light_of};
 use super::volume::{FastGrid, Phase};
 use crate::emission::source_at;
@@ -135,34 +135,19 @@ impl<'a> Thin<'a> {
                 .all(|light| matches!(light, Light::Distant(_) | Light::Point(_) | Light::Spot(_))),
         })
     }
+}
 
-    /// Renders all samples of `tiles`; `false` if `cancel` was set before they were complete.
-    #[inline(always)]
-    pub fn render_tiles(&self, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-        let columns = u64::from(self.scene.resolution[0]);
-        let mut profile = Profile::new();
-        for tile in tiles {
-            let (rect, samples) = (tile.rect(), tile.samples());
-            for y in rect.y..rect.y + rect.height {
-                if cancel.load(Ordering::Relaxed) {
-                    return false;
-                }
-                for x in rect.x..rect.x + rect.width {
-                    let pixel = u64::from(y) * columns + u64::from(x);
-                    for sample in samples.clone() {
-                        let mut random = Random::new(seed, pixel, sample);
-                        let film_u = [random.f64(), random.f64()];
-                        let lens_u = [random.f64(), random.f64()];
-                        let ray = self.scene.camera.ray([x, y], film_u, lens_u);
-                        tile.add(x, y, &self.trace(ray, &mut profile, &mut random));
-                    }
-                }
-            }
-        }
-        true
+impl Tracer for Thin<'_> {
+    type Memory = Profile;
+
+    fn scene(&self) -> &Scene {
+        self.scene
     }
 
-    /// One estimate of the radiance that arrives along `ray`.
+    fn memory(&self) -> Profile {
+        Profile::new()
+    }
+
     #[inline(always)]
     fn trace(&self, ray: Ray, profile: &mut Profile, random: &mut Random) -> Sample {
         let scene = self.scene;
@@ -249,7 +234,9 @@ impl<'a> Thin<'a> {
         }
         layers.into_sample(|colour| colour.as_dvec3())
     }
+}
 
+impl Thin<'_> {
     /// Walks along the ray through the grid; whether it meets it.
     #[inline(always)]
     fn walk(&self, ray: &Ray, end: f64, profile: &mut Profile) -> bool {

@@ -1,0 +1,26 @@
+//! Running loops of plain arithmetic compiled for the widest vectors that the processor has.
+//!
+//! The code is the same for all: fused multiply-add stays off, so that the bits are the same too.
+
+/// A task that gains from wide vectors. `run` is to be inlined, down to its loops.
+pub(crate) trait Task {
+    /// Does it; `false` if it was cancelled.
+    fn run(self) -> bool;
+}
+
+/// Does the task with AVX2 where the processor has it.
+pub(crate) fn run<T: Task>(task: T) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2") {
+        // SAFETY: the processor has the features, as just asked.
+        #[allow(unsafe_code)]
+        return unsafe { run_avx2(task) };
+    }
+    task.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+fn run_avx2<T: Task>(task: T) -> bool {
+    task.run()
+}
