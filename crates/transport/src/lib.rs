@@ -11,6 +11,7 @@ mod emission;
 mod equiangular_light;
 mod estimators;
 mod fast;
+mod first_draws;
 mod found_light;
 mod measure;
 mod path_layers;

@@ -7,11 +7,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use tyndall_film::{Film, FilmTile, Sample, TILE_EDGE};
 use tyndall_lanes::Random;
-use tyndall_scene::description::Integrator;
+use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Ray, Scene};
 
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
+use crate::first_draws::FirstDraws;
 use crate::reference;
 use crate::spectral::SpectralIntegrator;
 
@@ -20,6 +21,8 @@ use crate::spectral::SpectralIntegrator;
 pub struct RenderOptions {
     /// Which integrator; a [spectral](Scene::is_spectral) scene has the spectral one, whatever stands here.
     pub integrator: Integrator,
+    /// How the first random numbers of each path are drawn.
+    pub sampler: Sampler,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Number of threads, at least 1.
@@ -67,14 +70,14 @@ pub fn render_pass(
     let work = || {
         while let Some(block) = blocks.get(next_block.fetch_add(1, Ordering::Relaxed)) {
             let mut tiles = open_tiles(&lock(&film), block, end);
-            let (seed, cancel) = (options.seed, &control.cancel);
+            let cancel = &control.cancel;
             let complete = match &engine {
-                Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
-                Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, options, cancel),
+                Engine::Reference => trace_tiles(scene, &mut tiles, options, cancel, |ray, random| {
                     reference::trace_with(scene, options.estimators, ray, random)
                 }),
                 Engine::Spectral(spectral) => {
-                    trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| spectral.trace(ray, random))
+                    trace_tiles(scene, &mut tiles, options, cancel, |ray, random| spectral.trace(ray, random))
                 }
             };
             if !complete {
@@ -152,7 +155,7 @@ fn sample_count(tile: &FilmTile) -> u64 {
 fn trace_tiles(
     scene: &Scene,
     tiles: &mut [FilmTile],
-    seed: u64,
+    options: &RenderOptions,
     cancel: &AtomicBool,
     trace: impl Fn(Ray, &mut Random) -> Sample,
 ) -> bool {
@@ -165,9 +168,10 @@ fn trace_tiles(
                 }
                 let pixel = u64::from(y) * u64::from(scene.resolution[0]) + u64::from(x);
                 for sample in tile.samples() {
-                    let mut random = Random::new(seed, pixel, sample);
-                    let film_u = [random.f64(), random.f64()];
-                    let lens_u = [random.f64(), random.f64()];
+                    let mut random = Random::new(options.seed, pixel, sample);
+                    let draws = FirstDraws::new(options.sampler, options.seed, pixel, sample);
+                    let film_u = draws.film(&mut random);
+                    let lens_u = draws.lens(&mut random);
                     let ray = scene.camera.ray([x, y], film_u, lens_u);
                     tile.add(x, y, &trace(ray, &mut random));
                 }

@@ -145,9 +145,10 @@ fn quarter_disc([x, y]: [f64; 2]) -> f64 {
 #[test]
 fn means_are_unbiased_over_scramblings() {
     for m in [0, 2, 4, 7] {
-        for (f, truth) in
-            [(smooth as fn([f64; 2]) -> f64, (1f64.exp() - 1.0) / 3.0), (quarter_disc, 0.785_398_163)]
-        {
+        for (f, truth) in [
+            (smooth as fn([f64; 2]) -> f64, (1f64.exp() - 1.0) / 3.0),
+            (quarter_disc, std::f64::consts::FRAC_PI_4),
+        ] {
             let (mean, variance) = moments(|pixel| pairs(7, pixel, 1, 3 << m, 1 << m), f);
             let z = (mean - truth) / (variance / 2000.0).sqrt();
             assert!(z.abs() < 4.0, "2^{m} points: {mean}, not {truth}: z = {z}");

@@ -19,8 +19,10 @@ pub(crate) use volume::FastScene;
 use volume::FastVolume;
 
 use crate::emission::{path_weight, weighted_emission_along};
+use crate::first_draws::FirstDraws;
 use crate::found_light;
 use crate::path_layers::FirstMet;
+use crate::render::RenderOptions;
 use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::way::Span;
@@ -49,29 +51,29 @@ const ROUNDS_BETWEEN_LOOKS: u32 = 256;
 pub(crate) fn render_tiles(
     scene: &FastScene,
     tiles: &mut [FilmTile],
-    seed: u64,
+    options: &RenderOptions,
     cancel: &AtomicBool,
 ) -> bool {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2") {
         // SAFETY: the processor has the features, as just asked.
         #[allow(unsafe_code)]
-        return unsafe { run_avx2(scene, tiles, seed, cancel) };
+        return unsafe { run_avx2(scene, tiles, options, cancel) };
     }
-    Engine::new(scene, tiles, seed).run(cancel)
+    Engine::new(scene, tiles, options).run(cancel)
 }
 
 /// The same code, compiled for wider vectors. Fused multiply-add stays off, so that the bits are the same.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx2(scene: &FastScene, tiles: &mut [FilmTile], seed: u64, cancel: &AtomicBool) -> bool {
-    Engine::new(scene, tiles, seed).run(cancel)
+fn run_avx2(scene: &FastScene, tiles: &mut [FilmTile], options: &RenderOptions, cancel: &AtomicBool) -> bool {
+    Engine::new(scene, tiles, options).run(cancel)
 }
 
 struct Engine<'a> {
     scene: &'a FastScene<'a>,
     tiles: &'a mut [FilmTile],
-    seed: u64,
+    options: &'a RenderOptions,
     film_width: u64,
     rays: Box<Rays>,
     paths: Vec<Path>,
@@ -99,11 +101,11 @@ enum Next {
 
 impl<'a> Engine<'a> {
     #[inline(always)]
-    fn new(scene: &'a FastScene<'a>, tiles: &'a mut [FilmTile], seed: u64) -> Engine<'a> {
+    fn new(scene: &'a FastScene<'a>, tiles: &'a mut [FilmTile], options: &'a RenderOptions) -> Engine<'a> {
         Engine {
             scene,
             tiles,
-            seed,
+            options,
             film_width: u64::from(scene.scene.resolution[0]),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
@@ -199,10 +201,12 @@ impl<'a> Engine<'a> {
 
     #[inline(always)]
     fn start(&mut self, slot: usize, pixel: Pixel, sample: u64) -> Next {
-        let mut random =
-            Random::new(self.seed, u64::from(pixel.y) * self.film_width + u64::from(pixel.x), sample);
-        let film_u = [random.f64(), random.f64()];
-        let lens_u = [random.f64(), random.f64()];
+        let number = u64::from(pixel.y) * self.film_width + u64::from(pixel.x);
+        let RenderOptions { sampler, seed, .. } = *self.options;
+        let mut random = Random::new(seed, number, sample);
+        let draws = FirstDraws::new(sampler, seed, number, sample);
+        let film_u = draws.film(&mut random);
+        let lens_u = draws.lens(&mut random);
         let ray = self.scene.scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
         self.rays.random[slot] = random;
         self.paths[slot] = Path {

@@ -69,9 +69,13 @@ pub fn batches(scene: &Scene, integrator: Integrator, seed: u64, count: u64) -> 
 
 /// The same with any options.
 pub fn batches_with(scene: &Scene, options: RenderOptions, count: u64) -> Batches {
+    batches_of((0..count).map(|batch| render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES)))
+}
+
+/// The values of independent films of [`EDGE`] pixels each way.
+pub fn batches_of(films: impl Iterator<Item = Film>) -> Batches {
     let mut all: Batches = Vec::new();
-    for batch in 0..count {
-        let film = render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES);
+    for film in films {
         let means = region_means(&film);
         if all.is_empty() {
             all = means.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();

@@ -11,6 +11,7 @@ mod estimators;
 mod phase_functions;
 mod rendering;
 mod same_bits;
+mod sampler;
 mod scenes;
 mod slab;
 mod spectrum;
