@@ -12,6 +12,10 @@ use tyndall_scene::description::Sampler;
 enum Set {
     Film,
     Lens,
+    Light,
+    Direction,
+    /// Plus the number of the volume.
+    Distance,
 }
 
 /// Where the numbers come from.
@@ -46,6 +50,38 @@ impl FirstDraws {
         self.pair(Set::Lens, random)
     }
 
+    /// Which light is asked at the path's first turn, and the place on it.
+    #[inline(always)]
+    pub fn light(&self, random: &mut Random) -> LightDraws {
+        let [a, b, c, choice] = match self {
+            Self::Independent => [random.f64(), random.f64(), random.f64(), random.f64()],
+            Self::Stratified(stratified) => stratified.point4(Set::Light as u32).map(f64::from),
+        };
+        LightDraws { choice, place: [a, b, c] }
+    }
+
+    /// Where the path goes on from there.
+    #[inline(always)]
+    pub fn direction(&self, random: &mut Random) -> [f32; 2] {
+        match self {
+            Self::Independent => random.f32x2(),
+            Self::Stratified(stratified) => stratified.point2(Set::Direction as u32),
+        }
+    }
+
+    /// Exponential variate of mean 1: the optical thickness, under the majorant, up to the first tentative collision of the
+    /// camera's ray with the volume of this number.
+    #[inline(always)]
+    pub fn optical_thickness(&self, volume: usize, random: &mut Random) -> f32 {
+        match self {
+            Self::Independent => random.exponential(),
+            Self::Stratified(stratified) => {
+                let u = stratified.point1(Set::Distance as u32 + volume as u32);
+                -tyndall_lanes::ln(1.0 - u)
+            }
+        }
+    }
+
     #[inline(always)]
     fn pair(&self, set: Set, random: &mut Random) -> [f64; 2] {
         match self {
@@ -53,4 +89,12 @@ impl FirstDraws {
             Self::Stratified(stratified) => stratified.point2(set as u32).map(f64::from),
         }
     }
+}
+
+/// Numbers by which next-event estimation draws a light.
+pub(crate) struct LightDraws {
+    /// The light.
+    pub choice: f64,
+    /// The place on it; a surface and a direction take two.
+    pub place: [f64; 3],
 }

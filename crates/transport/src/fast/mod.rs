@@ -211,6 +211,7 @@ impl<'a> Engine<'a> {
         self.rays.random[slot] = random;
         self.paths[slot] = Path {
             pixel,
+            draws,
             position: (ray.origin - self.scene.centre).as_vec3(),
             direction: ray.direction.as_vec3(),
             throughput: Vec3::ONE,
@@ -270,7 +271,9 @@ impl<'a> Engine<'a> {
                         let integral = closed.density_integral(&local, (enter, leave)).unwrap_or(0.0);
                         self.rays.transmittance[slot] *= tyndall_lanes::exp((-mu_t * integral) as f32);
                     } else {
-                        let integral = f64::from(self.rays.random[slot].exponential()) / mu_t;
+                        let integral =
+                            f64::from(path.draws.optical_thickness(number, &mut self.rays.random[slot]))
+                                / mu_t;
                         let distance = closed.distance_of_integral(&local, enter, integral) as f32;
                         if distance < leave as f32 {
                             path.nearest = Some((number as u32, distance));
@@ -303,7 +306,10 @@ impl<'a> Engine<'a> {
                     rays.mu_t[slot] = mu_t;
                     rays.volume[slot] = number as u32;
                     path.place = place as u32;
-                    rays.tau[slot] = rays.random[slot].exponential();
+                    rays.tau[slot] = match shadow {
+                        true => rays.random[slot].exponential(),
+                        false => path.draws.optical_thickness(number, &mut rays.random[slot]),
+                    };
                     return true;
                 }
             }
@@ -380,7 +386,8 @@ impl<'a> Engine<'a> {
         };
 
         let before = path.direction;
-        path.direction = volume.phase.sample(before, random.f32x2());
+        path.direction = volume.phase.sample(before, path.draws.direction(random));
+        path.draws = FirstDraws::Independent;
         path.turn_pdf = volume.phase.value(before, path.direction);
         path.turned = Some(here);
         if let Some(sided) = self.sided.get_mut(slot) {
@@ -421,7 +428,7 @@ impl<'a> Engine<'a> {
         if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
             if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
-                draw_light(scene, vertex.position(), value, random)
+                draw_light(scene, vertex.position(), value, path.draws.light(random))
                 && unshadowed != Vec3::ZERO
             {
                 path.direct = path.throughput * unshadowed;
@@ -432,6 +439,7 @@ impl<'a> Engine<'a> {
             }
         }
 
+        path.draws = FirstDraws::Independent;
         path.position = (vertex.position() - self.scene.centre).as_vec3();
         let onward = vertex.sample(random).filter(|onward| {
             path.throughput *= onward.weight.truncate().as_vec3();
@@ -508,7 +516,7 @@ fn choose_direct(
         let phase = f64::from(phase.value(before, toward.as_vec3()));
         (DVec3::splat(phase), phase)
     };
-    let direct = draw_light(scene, from, value, random);
+    let direct = draw_light(scene, from, value, path.draws.light(random));
     let Direct { unshadowed, arriving, is_glow, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
