@@ -9,6 +9,7 @@ mod effort;
 mod emission;
 mod estimators;
 mod phase_functions;
+mod random_scenes;
 mod rendering;
 mod same_bits;
 mod sampler;

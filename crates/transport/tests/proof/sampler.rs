@@ -61,7 +61,7 @@ fn films(scene: &Scene, options: RenderOptions, count: u64) -> Batches {
 fn sobol_and_independent_samples_have_the_same_mean_and_sobol_less_noise() {
     let grey = box_and_cumulus();
     let spectral = chromatic(grey.clone(), DVec3::ONE, None);
-    let count = if is_full() { 400 } else { 40 };
+    let count = if is_full() { 400 } else { 30 };
     let all = BOTH.map(|integrator| (&grey, integrator)).into_iter().chain([(&spectral, Integrator::Fast)]);
     for (number, (scene, integrator)) in all.enumerate() {
         let batches = [Sampler::Independent, Sampler::Sobol].map(|sampler| {
@@ -69,23 +69,25 @@ fn sobol_and_independent_samples_have_the_same_mean_and_sobol_less_noise() {
             films(scene, RenderOptions { sampler, ..options(integrator, seed) }, count)
         });
         assert_same_batches(&format!("samplers, scene {number}"), [integrator; 2], &batches);
-        let [independent, sobol] = batches.map(|batches| variance_of_radiance(&batches));
-        let ratio = sobol / independent;
+        let [independent, sobol] = batches.map(|batches| log_variances(&batches));
+        let ratios = sobol.iter().zip(&independent).map(|(sobol, independent)| sobol - independent);
+        let lit: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
+        let ratio = (lit.iter().sum::<f64>() / lit.len() as f64).exp();
         eprintln!("{integrator:?}, scene {number}: variance {ratio:.3} of that of independent samples");
-        // A sum over 27 variances of 40 values each, known to 5 % or better.
-        assert!(
-            ratio < 0.85,
-            "{integrator:?}, scene {number}: variance {ratio} times that of independent samples"
-        );
+        // Each ratio of two variances of 30 values is known to 37 %, their geometric mean over 27 to 10 % or better. The other
+        // integrators take film and lens alone from the points.
+        if number == 1 {
+            assert!(ratio < 0.7, "variance {ratio} times that of independent samples");
+        }
     }
 }
 
-/// Sum over the regions of the picture of the variances of films.
-fn variance_of_radiance(batches: &Batches) -> f64 {
-    let of_radiance = |name: &str| ["R at", "G at", "B at"].iter().any(|channel| name.starts_with(channel));
-    let variances = batches.iter().filter(|(name, _)| of_radiance(name)).map(|(_, values)| {
+/// Logarithms of the variances of light scattered once, by region; −∞ where there is none.
+fn log_variances(batches: &Batches) -> Vec<f64> {
+    let single = batches.iter().filter(|(name, _)| name.starts_with("Single"));
+    let variances = single.map(|(_, values)| {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64
     });
-    variances.sum()
+    variances.map(f64::ln).collect()
 }
