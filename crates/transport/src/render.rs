@@ -49,8 +49,12 @@ pub enum Outcome {
     Cancelled,
 }
 
-/// Tiles along each edge of a block: 64×64 pixels, enough work to keep a pool full.
+/// Tiles along each edge of a block: 64×64 pixels, neighbours that look into the same parts of the volumes.
 const BLOCK_TILES: u32 = 4;
+
+/// Paths that a thread takes at once, where there are enough to go round: while a pool runs empty, after the last of
+/// them has begun, it does little.
+const PATHS_AT_ONCE: u64 = 1 << 16;
 
 /// Renders the samples that the film's open pass lacks before sample number `end`.
 ///
@@ -63,7 +67,7 @@ pub fn render_pass(
     options: &RenderOptions,
     control: &Control,
 ) -> Outcome {
-    let blocks = blocks(film);
+    let blocks = shares(blocks(film), film, end, options.threads);
     let engine = Engine::new(scene, options.integrator);
     let next_block = AtomicUsize::new(0);
     let film = Mutex::new(film);
@@ -133,6 +137,33 @@ fn blocks(film: &Film) -> Vec<Vec<usize>> {
         blocks[along(rect.y) * block_columns + along(rect.x)].push(tile);
     }
     blocks
+}
+
+/// Blocks joined to what a thread takes at once: [`PATHS_AT_ONCE`] and towards the end, where threads would have to wait
+/// for the last one, half a thread's part of what is left (guided self-scheduling, Polychronopoulos & Kuck 1987).
+fn shares(blocks: Vec<Vec<usize>>, film: &Film, end: u64, threads: usize) -> Vec<Vec<usize>> {
+    let paths = |block: &[usize]| -> u64 { block.iter().map(|&tile| lacking(film, tile, end)).sum() };
+    let mut left: u64 = blocks.iter().map(|block| paths(block)).sum();
+    let mut shares = Vec::new();
+    let mut blocks = blocks.into_iter().peekable();
+    while let Some(mut share) = blocks.next() {
+        let limit = PATHS_AT_ONCE.min(left / (2 * threads.max(1) as u64));
+        let mut taken = paths(&share);
+        while let Some(block) = blocks.next_if(|block| taken + paths(block) <= limit) {
+            taken += paths(&block);
+            share.extend(block);
+        }
+        left -= taken;
+        shares.push(share);
+    }
+    shares
+}
+
+/// Number of paths that a tile still needs.
+fn lacking(film: &Film, tile: usize, end: u64) -> u64 {
+    let start = film.next_sample(tile).expect("a pass is open");
+    let rect = film.tile_rect(tile);
+    u64::from(rect.width) * u64::from(rect.height) * end.saturating_sub(start)
 }
 
 /// Empty tiles for the samples that each tile of the block still needs.

@@ -16,6 +16,9 @@ use crate::rendering::{options, render_with};
 use crate::scenes::{scene_in, write_random_npy};
 use crate::surfaces::whole;
 
+/// The variable that chooses one scene, which is printed.
+const CHOSEN: &str = "TYNDALL_RANDOM_SCENE";
+
 const LEVEL: f64 = 1e-3;
 
 /// Independent films of each integrator, and samples of every pixel in each.
@@ -24,7 +27,7 @@ const SAMPLES: u64 = 4;
 
 #[test]
 fn random_scenes_look_the_same_to_all_integrators() {
-    let chosen = std::env::var("TYNDALL_RANDOM_SCENE").ok().and_then(|number| number.parse().ok());
+    let chosen = std::env::var(CHOSEN).ok().and_then(|number| number.parse().ok());
     let numbers = match chosen {
         Some(number) => number..number + 1,
         None if is_full() => 0..50,
@@ -40,6 +43,9 @@ fn compare(level: f64, number: u64) -> Result<(), String> {
     let folder = tempfile::tempdir().expect("a folder for test files");
     write_random_npy(&folder.path().join("random.npy"), [12, 10, 14], number);
     let text = draw::scene(number);
+    if std::env::var_os(CHOSEN).is_some() {
+        eprintln!("{text}");
+    }
     let scene = scene_in(folder.path(), &text);
 
     let integrators = [Integrator::Reference, Integrator::Fast];
