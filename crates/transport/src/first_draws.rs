@@ -12,10 +12,10 @@ use tyndall_scene::description::Sampler;
 enum Set {
     Film,
     Lens,
-    Light,
+    LightPlace,
     Direction,
-    /// Plus the number of the volume.
-    Distance,
+    /// The distance in the first volume, and which light is asked from there; plus the number of the volume.
+    DistanceAndLight,
 }
 
 /// Where the numbers come from.
@@ -50,14 +50,31 @@ impl FirstDraws {
         self.pair(Set::Lens, random)
     }
 
-    /// Which light is asked at the path's first turn, and the place on it.
+    /// Which light is asked at the path's first turn.
     #[inline(always)]
-    pub fn light(&self, random: &mut Random) -> LightDraws {
-        let [a, b, c, choice] = match self {
-            Self::Independent => [random.f64(), random.f64(), random.f64(), random.f64()],
-            Self::Stratified(stratified) => stratified.point4(Set::Light as u32).map(f64::from),
-        };
-        LightDraws { choice, place: [a, b, c] }
+    pub fn light(&self, random: &mut Random) -> f64 {
+        match self {
+            Self::Independent => random.f64(),
+            Self::Stratified(stratified) => f64::from(stratified.point2(Set::DistanceAndLight as u32)[1]),
+        }
+    }
+
+    /// The place on that light, or the direction to it.
+    #[inline(always)]
+    pub fn light_place(&self, random: &mut Random) -> [f64; 2] {
+        self.pair(Set::LightPlace, random)
+    }
+
+    /// The place in that light, if it is a volume.
+    #[inline(always)]
+    pub fn light_place_inside(&self, random: &mut Random) -> [f64; 3] {
+        match self {
+            Self::Independent => [random.f64(), random.f64(), random.f64()],
+            Self::Stratified(stratified) => {
+                let [a, b, c, _] = stratified.point4(Set::LightPlace as u32);
+                [a, b, c].map(f64::from)
+            }
+        }
     }
 
     /// Where the path goes on from there.
@@ -76,7 +93,7 @@ impl FirstDraws {
         match self {
             Self::Independent => random.exponential(),
             Self::Stratified(stratified) => {
-                let u = stratified.point1(Set::Distance as u32 + volume as u32);
+                let u = stratified.point1(Set::DistanceAndLight as u32 + volume as u32);
                 -tyndall_lanes::ln(1.0 - u)
             }
         }
@@ -89,12 +106,4 @@ impl FirstDraws {
             Self::Stratified(stratified) => stratified.point2(set as u32).map(f64::from),
         }
     }
-}
-
-/// Numbers by which next-event estimation draws a light.
-pub(crate) struct LightDraws {
-    /// The light.
-    pub choice: f64,
-    /// The place on it; a surface and a direction take two.
-    pub place: [f64; 3],
 }

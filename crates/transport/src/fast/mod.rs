@@ -75,6 +75,7 @@ struct Engine<'a> {
     tiles: &'a mut [FilmTile],
     options: &'a RenderOptions,
     film_width: u64,
+    has_lens: bool,
     rays: Box<Rays>,
     paths: Vec<Path>,
     /// What surfaces need of each path, if there are any.
@@ -107,6 +108,7 @@ impl<'a> Engine<'a> {
             tiles,
             options,
             film_width: u64::from(scene.scene.resolution[0]),
+            has_lens: scene.scene.camera.has_lens(),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
             sided: if scene.is_sided { vec![Sided::new(); POOL] } else { Vec::new() },
@@ -206,7 +208,7 @@ impl<'a> Engine<'a> {
         let mut random = Random::new(seed, number, sample);
         let draws = FirstDraws::new(sampler, seed, number, sample);
         let film_u = draws.film(&mut random);
-        let lens_u = draws.lens(&mut random);
+        let lens_u = if self.has_lens { draws.lens(&mut random) } else { [0.5; 2] };
         let ray = self.scene.scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
         self.rays.random[slot] = random;
         self.paths[slot] = Path {
@@ -428,7 +430,7 @@ impl<'a> Engine<'a> {
         if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
             if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
-                draw_light(scene, vertex.position(), value, path.draws.light(random))
+                draw_light(scene, vertex.position(), value, path.draws, random)
                 && unshadowed != Vec3::ZERO
             {
                 path.direct = path.throughput * unshadowed;
@@ -516,7 +518,7 @@ fn choose_direct(
         let phase = f64::from(phase.value(before, toward.as_vec3()));
         (DVec3::splat(phase), phase)
     };
-    let direct = draw_light(scene, from, value, path.draws.light(random));
+    let direct = draw_light(scene, from, value, path.draws, random);
     let Direct { unshadowed, arriving, is_glow, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();

@@ -9,7 +9,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use crate::emission::{Glow, draw_glow, path_weight, source_at};
-use crate::first_draws::LightDraws;
+use crate::first_draws::FirstDraws;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, Way};
 
@@ -113,12 +113,13 @@ pub(super) fn draw_light(
     scene: &Scene,
     from: DVec3,
     value: impl Fn(DVec3) -> (DVec3, f64),
-    draws: LightDraws,
+    draws: FirstDraws,
+    random: &mut Random,
 ) -> Option<Direct> {
-    let LightDraws { choice, place: u } = draws;
-    let (number, probability) = scene.choose_light(from, choice)?;
+    let (number, probability) = scene.choose_light(from, draws.light(random))?;
     let light = &scene.lights[number];
     if let Light::Volume(glow) = light {
+        let u = draws.light_place_inside(random);
         let Glow { position, toward, distance, density } = draw_glow(glow, from, u)?;
         let (value, path_pdf) = value(toward);
         let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
@@ -127,7 +128,7 @@ pub(super) fn draw_light(
         let unshadowed = (value * arriving * weight).as_vec3();
         return Some(Direct { unshadowed, arriving: arriving.as_vec3(), is_glow: true, toward, distance });
     }
-    let sample = light.sample(from, [u[0], u[1]]);
+    let sample = light.sample(from, draws.light_place(random));
     let (value, path_pdf) = value(sample.toward);
     let light_pdf = probability * sample.pdf;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + path_pdf) };
