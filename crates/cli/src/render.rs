@@ -240,7 +240,8 @@ fn sampler_name(sampler: Sampler) -> &'static str {
 fn options(description: &SceneDescription, estimators: Estimators) -> String {
     let sampler = match description.render.sampler {
         Sampler::Independent => String::new(),
-        sampler => format!(" sampler={}", sampler_name(sampler)),
+        // Readers of the picture should know as well.
+        Sampler::Sobol => " sampler=sobol standard-errors=upper-estimates".to_owned(),
     };
     let estimators = estimators::as_options(estimators);
     format!("integrator={}{sampler}{estimators}", name(description.render.integrator))

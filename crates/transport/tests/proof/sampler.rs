@@ -77,7 +77,7 @@ fn sobol_and_independent_samples_have_the_same_mean_and_sobol_less_noise() {
         // Each ratio of two variances of 30 values is known to 37 %, their geometric mean over 27 to 10 % or better. The other
         // integrators take film and lens alone from the points.
         if number == 1 {
-            assert!(ratio < 0.7, "variance {ratio} times that of independent samples");
+            assert!(ratio < 0.85, "variance {ratio} times that of independent samples");
         }
     }
 }
