@@ -12,7 +12,7 @@ use std::sync::atomic::Ordering;
 
 use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
-use tyndall_scene::description::{FilmDescription, Integrator, Layer, SceneDescription};
+use tyndall_scene::description::{FilmDescription, Integrator, Layer, Sampler, SceneDescription};
 use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer};
 
@@ -68,6 +68,10 @@ pub struct Args {
     /// Which integrator: one path at a time to read beside the equations, or many at once
     #[arg(long, value_name = "reference|fast", value_parser = parse_integrator)]
     integrator: Option<Integrator>,
+    /// How the first random numbers of paths are drawn: each path for itself, or evenly over the paths of a pixel, with
+    /// less noise and standard errors that are upper estimates
+    #[arg(long, value_name = "independent|sobol", value_parser = parse_sampler)]
+    sampler: Option<Sampler>,
     #[command(flatten)]
     estimators: EstimatorArgs,
     /// Save the exact sums here every minute and at the end, for --resume
@@ -102,6 +106,7 @@ impl Args {
             exposure: None,
             set: Vec::new(),
             integrator: None,
+            sampler: None,
             estimators: EstimatorArgs::default(),
             checkpoint: None,
             resume: false,
@@ -213,6 +218,7 @@ fn overrides(args: &Args) -> Vec<String> {
     overrides.extend(args.seed.map(|seed| format!("render.seed={seed}")));
     let integrator = args.integrator.or(args.estimators.integrator());
     overrides.extend(integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
+    overrides.extend(args.sampler.map(|sampler| format!("render.sampler={}", sampler_name(sampler))));
     overrides
 }
 
@@ -221,6 +227,24 @@ fn name(integrator: Integrator) -> &'static str {
         Integrator::Fast => "fast",
         Integrator::Reference => "reference",
     }
+}
+
+fn sampler_name(sampler: Sampler) -> &'static str {
+    match sampler {
+        Sampler::Independent => "independent",
+        Sampler::Sobol => "sobol",
+    }
+}
+
+/// The options as they are kept with the picture: samples of different ones are not merged, as their errors differ.
+fn options(description: &SceneDescription, estimators: Estimators) -> String {
+    let sampler = match description.render.sampler {
+        Sampler::Independent => String::new(),
+        // Readers of the picture should know as well.
+        Sampler::Sobol => " sampler=sobol standard-errors=upper-estimates".to_owned(),
+    };
+    let estimators = estimators::as_options(estimators);
+    format!("integrator={}{sampler}{estimators}", name(description.render.integrator))
 }
 
 /// An empty film, or the one of the checkpoint.
@@ -235,11 +259,7 @@ fn open_picture(
     let metadata = ImageMetadata {
         scene_hash: scene_hash(description, folder)?.to_string(),
         version: env!("CARGO_PKG_VERSION").to_string(),
-        options: format!(
-            "integrator={}{}",
-            name(description.render.integrator),
-            estimators::as_options(estimators)
-        ),
+        options: options(description, estimators),
         seed: u64::from(description.render.seed),
         colours: colours(observer),
         crop: crop(&description.film),
@@ -260,7 +280,7 @@ fn open_picture(
     let shape = |film: &Film| (film.width(), film.height(), film.layers());
     if !same(&saved.metadata, &empty.metadata) || shape(&saved.film) != shape(&empty.film) {
         return Err(miette!(
-            "{}: is of another scene, size, seed, integrator, estimators, layers or version; name another --checkpoint",
+            "{}: is of another scene, size, seed, integrator, sampler, estimators, layers or version; name another --checkpoint",
             checkpoint.display()
         ));
     }
@@ -300,6 +320,7 @@ fn render(
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let options = RenderOptions {
         integrator: description.render.integrator,
+        sampler: description.render.sampler,
         seed: pictures[0].metadata.seed,
         threads: args.threads.map_or(cores, usize::from),
         estimators: args.estimators.chosen(),
@@ -393,5 +414,13 @@ fn parse_integrator(text: &str) -> Result<Integrator, String> {
         "fast" => Ok(Integrator::Fast),
         "reference" => Ok(Integrator::Reference),
         _ => Err("there are `fast` and `reference`".into()),
+    }
+}
+
+fn parse_sampler(text: &str) -> Result<Sampler, String> {
+    match text {
+        "independent" => Ok(Sampler::Independent),
+        "sobol" => Ok(Sampler::Sobol),
+        _ => Err("there are `independent` and `sobol`".into()),
     }
 }

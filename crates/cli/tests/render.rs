@@ -53,7 +53,10 @@ fn merged_parts_are_the_whole_and_make_the_same_picture() {
 
     folder.done("render scene.toml --samples 8..16 --seed 3 -o seed.acc");
     folder.done("render scene.toml --samples 8..16 --set volume.0.mu_t=3 -o scene.acc");
-    for (other, word) in [("a.acc", "0..8"), ("seed.acc", "seed"), ("scene.acc", "scene")] {
+    folder.done("render scene.toml --samples 8..16 --sampler sobol -o sampler.acc");
+    let others =
+        [("a.acc", "0..8"), ("seed.acc", "seed"), ("scene.acc", "scene"), ("sampler.acc", "sampler=sobol")];
+    for (other, word) in others {
         let run = folder.run(&format!("merge a.acc {other} -o refused.exr"));
         assert!(run.code == Some(1) && run.error().contains(word), "{}", run.err);
     }

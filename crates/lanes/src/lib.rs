@@ -1,10 +1,12 @@
-//! Numbers for light transport: counter-based random numbers and elementary functions that give the
-//! same bits on every machine. Knows no rendering.
+//! Numbers for light transport: counter-based random numbers, scrambled Sobol points and elementary functions that give
+//! the same bits on every machine. Knows no rendering.
 
 #![forbid(unsafe_code)]
 
 mod elementary;
 mod random;
+mod sobol;
 
 pub use elementary::{exp, ln, sin_cos_turns};
 pub use random::Random;
+pub use sobol::Stratified;

@@ -89,6 +89,11 @@ impl Camera {
         (!self.is_orthographic && self.aperture_radius == 0.0).then_some(self.position)
     }
 
+    /// Whether [`ray`](Self::ray) depends on the place on the lens.
+    pub fn has_lens(&self) -> bool {
+        !self.is_orthographic && self.aperture_radius > 0.0
+    }
+
     /// The direction the camera looks in, of unit length.
     pub fn forward(&self) -> DVec3 {
         self.forward

@@ -1,6 +1,6 @@
 //! How efficient the integrators are on the benchmark's scenes: 1 / ((relMSE − own noise of the reference) · seconds).
 //!
-//!     cargo run --release -p tyndall-transport --example efficiency -- [SCENE[:SAMPLES[*SEEDS]]]... [--integrator reference]
+//!     cargo run --release -p tyndall-transport --example efficiency -- [SCENE[:SAMPLES[*SEEDS]]]... [--integrator reference] [--sampler sobol]
 //!
 //! SCENE is a letter of `benchmarks/scenes`; without any, all are rendered, 16 samples a pixel, 2 seeds. The reference
 //! pictures by other renderers are looked for in `../shared/bench/references` beside the checkout. `seconds` is the
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use tyndall_film::comparison::{Picture, compare};
 use tyndall_film::{Film, Layers};
-use tyndall_scene::description::Integrator;
+use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Scene, SceneDocument, build};
 use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
 
@@ -28,12 +28,17 @@ const SCENES: [(&str, &str, f64); 6] = [
 
 fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
-    let integrator = match arguments.iter().position(|argument| argument == "--integrator") {
-        Some(at) => match arguments.drain(at..(at + 2).min(arguments.len())).nth(1).as_deref() {
-            Some("reference") => Integrator::Reference,
-            _ => Integrator::Fast,
-        },
-        None => Integrator::Fast,
+    let mut option = |name: &str| {
+        let at = arguments.iter().position(|argument| argument == name)?;
+        arguments.drain(at..(at + 2).min(arguments.len())).nth(1)
+    };
+    let integrator = match option("--integrator").as_deref() {
+        Some("reference") => Integrator::Reference,
+        _ => Integrator::Fast,
+    };
+    let sampler = match option("--sampler").as_deref() {
+        Some("sobol") => Sampler::Sobol,
+        _ => Sampler::Independent,
     };
     if arguments.is_empty() {
         arguments = SCENES.iter().map(|(letter, ..)| (*letter).to_owned()).collect();
@@ -48,11 +53,18 @@ fn main() {
         let Some((_, file, noise)) = SCENES.iter().find(|(known, ..)| *known == letter) else {
             panic!("{argument}: no scene of this letter");
         };
-        measure(letter, file, *noise, number(samples), number(seeds), integrator);
+        measure(letter, file, *noise, number(samples), number(seeds), (integrator, sampler));
     }
 }
 
-fn measure(letter: &str, file: &str, noise: f64, samples: u64, seeds: u64, integrator: Integrator) {
+fn measure(
+    letter: &str,
+    file: &str,
+    noise: f64,
+    samples: u64,
+    seeds: u64,
+    (integrator, sampler): (Integrator, Sampler),
+) {
     let benchmarks = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benchmarks");
     let references = benchmarks.join("../../shared/bench/references");
     let scene = read(&benchmarks.join("scenes").join(format!("{file}.toml")));
@@ -61,7 +73,7 @@ fn measure(letter: &str, file: &str, noise: f64, samples: u64, seeds: u64, integ
     let (mut relmse, mut trimmed, mut seconds, mut cpu, mut z) = (0.0, 0.0, 0.0, 0.0, [0.0; 3]);
     for seed in 1..=seeds {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let options = RenderOptions { integrator, seed, threads, estimators: Estimators::default() };
+        let options = RenderOptions { integrator, sampler, seed, threads, estimators: Estimators::default() };
         let (start, cpu_start) = (Instant::now(), cpu_seconds());
         let film = render(&scene, samples, &options);
         seconds += start.elapsed().as_secs_f64();

@@ -139,9 +139,9 @@ pub(crate) struct Glow {
     pub density: f64,
 }
 
-/// Draws a point of `light` as seen from `from`; none where there is no direction to it, or no light.
-pub(crate) fn draw_glow(light: &VolumeLight, from: DVec3, random: &mut Random) -> Option<Glow> {
-    let sample = light.sample([random.f64(), random.f64(), random.f64()]);
+/// Draws a point of `light` as seen from `from`, for `u` uniform in [0, 1)³; none where there is no direction to it, or no light.
+pub(crate) fn draw_glow(light: &VolumeLight, from: DVec3, u: [f64; 3]) -> Option<Glow> {
+    let sample = light.sample(u);
     let offset = sample.position - from;
     let distance = offset.length();
     (distance != 0.0 && sample.pdf_volume > 0.0).then(|| Glow {

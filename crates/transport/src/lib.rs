@@ -12,6 +12,7 @@ mod equiangular_light;
 mod estimators;
 mod fast;
 mod fast_spectral;
+mod first_draws;
 mod found_light;
 mod measure;
 mod path_layers;

@@ -359,8 +359,8 @@ impl Shadow<'_> {
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec3::ZERO };
-        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, random)
-        else {
+        let u = [random.f64(), random.f64(), random.f64()];
+        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, u) else {
             return DVec3::ZERO;
         };
         let volume = light.volume();

@@ -7,12 +7,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use tyndall_film::{Film, FilmTile, Sample, TILE_EDGE};
 use tyndall_lanes::Random;
-use tyndall_scene::description::Integrator;
+use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Ray, Scene};
 
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::fast_spectral::{self, FastSpectralScene};
+use crate::first_draws::FirstDraws;
 use crate::reference;
 use crate::spectral::SpectralIntegrator;
 
@@ -22,6 +23,8 @@ pub struct RenderOptions {
     /// Which integrator. A [spectral](Scene::is_spectral) scene has the spectral one, or, if it is a single even medium
     /// and the fast one is asked for, a fast one of its own.
     pub integrator: Integrator,
+    /// How the first random numbers of each path are drawn.
+    pub sampler: Sampler,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Number of threads, at least 1.
@@ -48,8 +51,12 @@ pub enum Outcome {
     Cancelled,
 }
 
-/// Tiles along each edge of a block: 64×64 pixels, enough work to keep a pool full.
+/// Tiles along each edge of a block: 64×64 pixels, neighbours that look into the same parts of the volumes.
 const BLOCK_TILES: u32 = 4;
+
+/// Paths that a thread takes at once, where there are enough to go round: while a pool runs empty, after the last of
+/// them has begun, it does little.
+const PATHS_AT_ONCE: u64 = 1 << 16;
 
 /// A scene made ready for an integrator, for as many passes as are wanted.
 pub struct Renderer<'a> {
@@ -90,23 +97,23 @@ impl<'a> Renderer<'a> {
         control: &Control,
     ) -> Outcome {
         let scene = self.scene;
-        let blocks = blocks(film);
+        let blocks = shares(blocks(film), film, end, options.threads);
         let next_block = AtomicUsize::new(0);
         let film = Mutex::new(film);
         let work = || {
             while let Some(block) = blocks.get(next_block.fetch_add(1, Ordering::Relaxed)) {
                 let mut tiles = open_tiles(&lock(&film), block, end);
-                let (seed, cancel) = (options.seed, &control.cancel);
+                let cancel = &control.cancel;
                 let complete = match &self.engine {
-                    Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, seed, cancel),
+                    Engine::Fast(fast_scene) => fast::render_tiles(fast_scene, &mut tiles, options, cancel),
                     Engine::FastSpectral(fast_scene) => {
-                        fast_spectral::render_tiles(fast_scene, &mut tiles, seed, cancel)
+                        fast_spectral::render_tiles(fast_scene, &mut tiles, options, cancel)
                     }
-                    Engine::Reference => trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                    Engine::Reference => trace_tiles(scene, &mut tiles, options, cancel, |ray, random| {
                         reference::trace_with(scene, options.estimators, ray, random)
                     }),
                     Engine::Spectral(spectral) => {
-                        trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| {
+                        trace_tiles(scene, &mut tiles, options, cancel, |ray, random| {
                             spectral.trace(ray, random)
                         })
                     }
@@ -174,6 +181,33 @@ fn blocks(film: &Film) -> Vec<Vec<usize>> {
     blocks
 }
 
+/// Blocks joined to what a thread takes at once: [`PATHS_AT_ONCE`] and towards the end, where threads would have to wait
+/// for the last one, half a thread's part of what is left (guided self-scheduling, Polychronopoulos & Kuck 1987).
+fn shares(blocks: Vec<Vec<usize>>, film: &Film, end: u64, threads: usize) -> Vec<Vec<usize>> {
+    let paths = |block: &[usize]| -> u64 { block.iter().map(|&tile| lacking(film, tile, end)).sum() };
+    let mut left: u64 = blocks.iter().map(|block| paths(block)).sum();
+    let mut shares = Vec::new();
+    let mut blocks = blocks.into_iter().peekable();
+    while let Some(mut share) = blocks.next() {
+        let limit = PATHS_AT_ONCE.min(left / (2 * threads.max(1) as u64));
+        let mut taken = paths(&share);
+        while let Some(block) = blocks.next_if(|block| taken + paths(block) <= limit) {
+            taken += paths(&block);
+            share.extend(block);
+        }
+        left -= taken;
+        shares.push(share);
+    }
+    shares
+}
+
+/// Number of paths that a tile still needs.
+fn lacking(film: &Film, tile: usize, end: u64) -> u64 {
+    let start = film.next_sample(tile).expect("a pass is open");
+    let rect = film.tile_rect(tile);
+    u64::from(rect.width) * u64::from(rect.height) * end.saturating_sub(start)
+}
+
 /// Empty tiles for the samples that each tile of the block still needs.
 fn open_tiles(film: &Film, block: &[usize], end: u64) -> Vec<FilmTile> {
     block
@@ -194,7 +228,7 @@ fn sample_count(tile: &FilmTile) -> u64 {
 fn trace_tiles(
     scene: &Scene,
     tiles: &mut [FilmTile],
-    seed: u64,
+    options: &RenderOptions,
     cancel: &AtomicBool,
     trace: impl Fn(Ray, &mut Random) -> Sample,
 ) -> bool {
@@ -207,9 +241,10 @@ fn trace_tiles(
                 }
                 let pixel = u64::from(y) * u64::from(scene.resolution[0]) + u64::from(x);
                 for sample in tile.samples() {
-                    let mut random = Random::new(seed, pixel, sample);
-                    let film_u = [random.f64(), random.f64()];
-                    let lens_u = [random.f64(), random.f64()];
+                    let mut random = Random::new(options.seed, pixel, sample);
+                    let draws = FirstDraws::new(options.sampler, options.seed, pixel, sample);
+                    let film_u = draws.film(&mut random);
+                    let lens_u = draws.lens(&mut random);
                     let ray = scene.camera.ray([x, y], film_u, lens_u);
                     tile.add(x, y, &trace(ray, &mut random));
                 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use miette::IntoDiagnostic;
 use serde::Serialize;
 use tyndall_film::{Film, LUMINANCE, Layers};
-use tyndall_scene::description::Integrator;
+use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Camera, Scene, SceneDescription};
 use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
 
@@ -111,6 +111,7 @@ fn render(
     film.open_range(0).into_diagnostic()?;
     let render_options = RenderOptions {
         integrator: Integrator::Reference,
+        sampler: Sampler::Independent,
         // Far apart, as seeds that a user gives stand close together.
         seed: options.seed + (number << 32),
         threads: options.threads,

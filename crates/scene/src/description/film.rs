@@ -102,6 +102,9 @@ pub struct RenderDescription {
     pub max_depth: Option<u32>,
     /// Which implementation of the transport renders.
     pub integrator: Integrator,
+    /// How the first random numbers of paths are drawn.
+    #[serde(skip_serializing_if = "super::is_default")]
+    pub sampler: Sampler,
     /// What colours are computed with.
     #[serde(skip_serializing_if = "super::is_default")]
     pub mode: ColourMode,
@@ -120,7 +123,14 @@ pub enum ColourMode {
 
 impl Default for RenderDescription {
     fn default() -> Self {
-        Self { spp: 64, seed: 0, max_depth: None, integrator: Integrator::Fast, mode: ColourMode::Rgb }
+        Self {
+            spp: 64,
+            seed: 0,
+            max_depth: None,
+            integrator: Integrator::Fast,
+            sampler: Sampler::Independent,
+            mode: ColourMode::Rgb,
+        }
     }
 }
 
@@ -133,4 +143,16 @@ pub enum Integrator {
     Fast,
     /// One path at a time, to be read beside the equations.
     Reference,
+}
+
+/// How the first random numbers of the paths of a pixel are drawn; all give the same expected picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Sampler {
+    /// Each path for itself, so that standard errors are those of the picture.
+    #[default]
+    Independent,
+    /// Evenly over the paths of a pixel, by Owen-scrambled Sobol points: less noise, and standard errors that are upper
+    /// estimates, since they take paths for independent.
+    Sobol,
 }

@@ -34,7 +34,7 @@ mod volume;
 pub use automatic::{AutomaticScene, Glow, VolumeSummary};
 pub use camera::{CameraDescription, Projection};
 pub use emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
-pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription};
+pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription, Sampler};
 pub use lights::{
     ConstantLightDescription, DistantLightDescription, ImageFilter, ImageLightDescription, ImageMapping,
     LightDescription, PointLightDescription, SkyDescription, SpotFalloff, SpotLightDescription,

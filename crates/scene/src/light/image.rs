@@ -72,6 +72,13 @@ impl LightImage {
         let (left, top) = (x.floor(), y.floor());
         let (x, y) = (x - left, y - top);
         let (left, top) = (left as isize, top as isize);
+        let is_inside = |at: isize, count: usize| at >= 0 && (at as usize) + 1 < count;
+        if is_inside(left, self.width) && is_inside(top, self.height) {
+            let above = top as usize * self.width + left as usize;
+            let [above, below] = [above, above + self.width];
+            let texel = |number: usize| DVec3::from_array(self.texels[number].map(f64::from));
+            return (texel(above).lerp(texel(above + 1), x)).lerp(texel(below).lerp(texel(below + 1), x), y);
+        }
         let texel = |column: isize, row: isize| {
             let [column, row] = self.wrapped(mapping, column, row);
             self.texel(column, row)

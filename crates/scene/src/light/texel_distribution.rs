@@ -10,8 +10,33 @@ pub(super) struct TexelDistribution {
     width: usize,
     /// Cumulative probability after each row; the last is 1.
     rows: Vec<f64>,
+    /// The last row with any weight: rounding may leave the last cumulative value a little below 1.
+    last_row: usize,
     /// Cumulative quanta after each texel of each row.
     quanta: Vec<u32>,
+    row_guide: Guide,
+    column_guides: Vec<Guide>,
+}
+
+/// For each of equal parts of a cumulative table's range, which value is the first above where the part begins (the index
+/// table of Chen & Asau 1974): what is left to search lies in a line or two of the cache.
+#[derive(Debug, Clone)]
+struct Guide([u32; GUIDE + 1]);
+
+/// A power of two, so that the parts of a random number are exact.
+const GUIDE: usize = 32;
+
+impl Guide {
+    /// `first_above(x)` is the number of values of the table up to the fraction x of its range.
+    fn new(first_above: impl Fn(f64) -> usize) -> Self {
+        Self(std::array::from_fn(|part| first_above(part as f64 / GUIDE as f64) as u32))
+    }
+
+    /// The numbers between which that of `u` in [0, 1) lies.
+    fn between(&self, u: f64) -> [usize; 2] {
+        let part = ((u * GUIDE as f64) as usize).min(GUIDE - 1);
+        [self.0[part], self.0[part + 1]].map(|number| number as usize)
+    }
 }
 
 /// A chosen texel.
@@ -63,21 +88,32 @@ impl TexelDistribution {
             *row = cumulative;
         }
         rows.iter_mut().for_each(|row| *row /= cumulative);
-        Some(Self { width, rows, quanta })
+        let last = rows[height - 1];
+        let last_row = rows.partition_point(|cumulative| *cumulative < last);
+        let row_guide = Guide::new(|at| rows.partition_point(|cumulative| *cumulative <= at));
+        let column_guides = quanta.chunks(width).map(|quanta| {
+            let row_quanta = f64::from(quanta[width - 1]);
+            Guide::new(|at| quanta.partition_point(|cumulative| f64::from(*cumulative) <= at * row_quanta))
+        });
+        let column_guides = column_guides.collect();
+        Some(Self { width, rows, last_row, quanta, row_guide, column_guides })
     }
 
     /// A texel for `u` uniform in [0, 1)²: `u[0]` chooses the column, `u[1]` the row.
     pub(super) fn sample(&self, u: [f64; 2]) -> ChosenTexel {
         // Rows without weight have no width between cumulative values and are never chosen.
-        let row = self.rows.partition_point(|cumulative| *cumulative <= u[1]).min(self.last_row());
+        let [from, to] = self.row_guide.between(u[1]);
+        let row = from + self.rows[from..to].partition_point(|cumulative| *cumulative <= u[1]);
+        let row = row.min(self.last_row);
         let row_start = if row == 0 { 0.0 } else { self.rows[row - 1] };
         let row_probability = self.rows[row] - row_start;
 
         let quanta = self.row_quanta(row);
         let row_quanta = f64::from(quanta[self.width - 1]);
         let target = u[0] * row_quanta;
-        let column =
-            quanta.partition_point(|cumulative| f64::from(*cumulative) <= target).min(self.width - 1);
+        let [from, to] = self.column_guides[row].between(u[0]);
+        let column = from + quanta[from..to].partition_point(|cumulative| f64::from(*cumulative) <= target);
+        let column = column.min(self.width - 1);
         let column_start = if column == 0 { 0.0 } else { f64::from(quanta[column - 1]) };
         let column_quanta = f64::from(quanta[column]) - column_start;
 
@@ -107,11 +143,5 @@ impl TexelDistribution {
 
     fn row_quanta(&self, row: usize) -> &[u32] {
         &self.quanta[row * self.width..][..self.width]
-    }
-
-    /// The last row with any weight: rounding may leave the last cumulative value a little below 1.
-    fn last_row(&self) -> usize {
-        let last = self.rows[self.rows.len() - 1];
-        self.rows.partition_point(|cumulative| *cumulative < last)
     }
 }

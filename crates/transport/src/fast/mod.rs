@@ -26,8 +26,10 @@ pub(crate) use volume::FastScene;
 use volume::FastVolume;
 
 use crate::emission::{path_weight, weighted_emission_along};
+use crate::first_draws::FirstDraws;
 use crate::found_light;
 use crate::path_layers::FirstMet;
+use crate::render::RenderOptions;
 use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::way::{Span, is_plain};
@@ -66,22 +68,23 @@ const ROUNDS_BETWEEN_LOOKS: u32 = 256;
 pub(crate) fn render_tiles(
     scene: &FastScene,
     tiles: &mut [FilmTile],
-    seed: u64,
+    options: &RenderOptions,
     cancel: &AtomicBool,
 ) -> bool {
     match (&scene.homogeneous, &scene.thin) {
-        (Some(homogeneous), _) => wide::run(PathByPath { tracer: homogeneous, tiles, seed, cancel }),
-        (None, Some(thin)) => wide::run(PathByPath { tracer: thin, tiles, seed, cancel }),
-        (None, None) => wide::run(Engine::new(scene, tiles, seed, cancel)),
+        (Some(homogeneous), _) => wide::run(PathByPath { tracer: homogeneous, tiles, options, cancel }),
+        (None, Some(thin)) => wide::run(PathByPath { tracer: thin, tiles, options, cancel }),
+        (None, None) => wide::run(Engine::new(scene, tiles, options, cancel)),
     }
 }
 
 struct Engine<'a> {
     scene: &'a FastScene<'a>,
     tiles: &'a mut [FilmTile],
-    seed: u64,
+    options: &'a RenderOptions,
     cancel: &'a AtomicBool,
     film_width: u64,
+    has_lens: bool,
     rays: Box<Rays>,
     paths: Vec<Path>,
     /// What surfaces need of each path, if there are any.
@@ -150,14 +153,15 @@ impl<'a> Engine<'a> {
     fn new(
         scene: &'a FastScene<'a>,
         tiles: &'a mut [FilmTile],
-        seed: u64,
+        options: &'a RenderOptions,
         cancel: &'a AtomicBool,
     ) -> Engine<'a> {
         Engine {
             scene,
             tiles,
-            seed,
+            options,
             cancel,
+            has_lens: scene.scene.camera.has_lens(),
             film_width: u64::from(scene.scene.resolution[0]),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
@@ -225,14 +229,17 @@ impl<'a> Engine<'a> {
 
     #[inline(always)]
     fn start(&mut self, slot: usize, pixel: Pixel, sample: u64) -> Next {
-        let mut random =
-            Random::new(self.seed, u64::from(pixel.y) * self.film_width + u64::from(pixel.x), sample);
-        let film_u = [random.f64(), random.f64()];
-        let lens_u = [random.f64(), random.f64()];
+        let number = u64::from(pixel.y) * self.film_width + u64::from(pixel.x);
+        let RenderOptions { sampler, seed, .. } = *self.options;
+        let mut random = Random::new(seed, number, sample);
+        let draws = FirstDraws::new(sampler, seed, number, sample);
+        let film_u = draws.film(&mut random);
+        let lens_u = if self.has_lens { draws.lens(&mut random) } else { [0.5; 2] };
         let ray = self.scene.scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
         self.rays.random[slot] = random;
         self.paths[slot] = Path {
             pixel,
+            draws,
             position: (ray.origin - self.scene.centre).as_vec3(),
             direction: ray.direction.as_vec3(),
             throughput: Vec3::ONE,
@@ -292,7 +299,9 @@ impl<'a> Engine<'a> {
                         let integral = closed.density_integral(&local, (enter, leave)).unwrap_or(0.0);
                         self.rays.transmittance[slot] *= tyndall_lanes::exp((-mu_t * integral) as f32);
                     } else {
-                        let integral = f64::from(self.rays.random[slot].exponential()) / mu_t;
+                        let integral =
+                            f64::from(path.draws.optical_thickness(number, &mut self.rays.random[slot]))
+                                / mu_t;
                         let distance = closed.distance_of_integral(&local, enter, integral) as f32;
                         if distance < leave as f32 {
                             path.nearest = Some((number as u32, distance));
@@ -325,7 +334,10 @@ impl<'a> Engine<'a> {
                     rays.mu_t[slot] = mu_t;
                     rays.volume[slot] = number as u32;
                     path.place = place as u32;
-                    rays.tau[slot] = rays.random[slot].exponential();
+                    rays.tau[slot] = match shadow {
+                        true => rays.random[slot].exponential(),
+                        false => path.draws.optical_thickness(number, &mut rays.random[slot]),
+                    };
                     return true;
                 }
             }
@@ -403,7 +415,8 @@ impl<'a> Engine<'a> {
         };
 
         let before = path.direction;
-        path.direction = volume.phase.sample(before, random.f32x2());
+        path.direction = volume.phase.sample(before, path.draws.direction(random));
+        path.draws = FirstDraws::Independent;
         path.turn_pdf = volume.phase.value(before, path.direction);
         path.turned = Some(here);
         if let Some(sided) = self.sided.get_mut(slot) {
@@ -445,7 +458,7 @@ impl<'a> Engine<'a> {
             for &number in &self.seen_at_once {
                 let value = |toward| (vertex.value(toward).truncate(), 0.0);
                 if let Some(Direct { unshadowed, toward, distance, .. }) =
-                    light_of(scene, (number, 1.0), vertex.position(), value, random)
+                    light_of(scene, (number, 1.0), vertex.position(), value, path.draws, random)
                     && unshadowed != Vec3::ZERO
                     && sided.sees_from(scene, &vertex, toward, distance, random)
                 {
@@ -456,7 +469,7 @@ impl<'a> Engine<'a> {
         } else if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
             if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
-                draw_light(scene, vertex.position(), value, random)
+                draw_light(scene, vertex.position(), value, path.draws, random)
                 && unshadowed != Vec3::ZERO
             {
                 path.direct = path.throughput * unshadowed;
@@ -467,6 +480,7 @@ impl<'a> Engine<'a> {
             }
         }
 
+        path.draws = FirstDraws::Independent;
         path.position = (vertex.position() - self.scene.centre).as_vec3();
         let onward = vertex.sample(random).filter(|onward| {
             path.throughput *= onward.weight.truncate().as_vec3();
@@ -557,7 +571,7 @@ fn choose_direct(
         let phase = f64::from(phase.value(before, toward.as_vec3()));
         (DVec3::splat(phase), phase)
     };
-    let direct = draw_light(scene.scene, from, value, random);
+    let direct = draw_light(scene.scene, from, value, path.draws, random);
     let Direct { light, unshadowed, arriving, is_glow, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();

@@ -6,6 +6,8 @@ use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 use tyndall_scene::{Ray, Scene};
 
+use crate::first_draws::FirstDraws;
+use crate::render::RenderOptions;
 use crate::wide;
 
 /// What traces paths.
@@ -18,14 +20,14 @@ pub(super) trait Tracer {
     fn memory(&self) -> Self::Memory;
 
     /// One estimate of the radiance that arrives along `ray`.
-    fn trace(&self, ray: Ray, memory: &mut Self::Memory, random: &mut Random) -> Sample;
+    fn trace(&self, ray: Ray, memory: &mut Self::Memory, draws: FirstDraws, random: &mut Random) -> Sample;
 }
 
 /// All samples of some tiles.
 pub(super) struct PathByPath<'a, T> {
     pub tracer: &'a T,
     pub tiles: &'a mut [FilmTile],
-    pub seed: u64,
+    pub options: &'a RenderOptions,
     pub cancel: &'a AtomicBool,
 }
 
@@ -34,6 +36,8 @@ impl<T: Tracer> wide::Task for PathByPath<'_, T> {
     fn run(self) -> bool {
         let scene = self.tracer.scene();
         let columns = u64::from(scene.resolution[0]);
+        let (seed, sampler) = (self.options.seed, self.options.sampler);
+        let has_lens = scene.camera.has_lens();
         let mut memory = self.tracer.memory();
         for tile in self.tiles {
             let (rect, samples) = (tile.rect(), tile.samples());
@@ -44,11 +48,12 @@ impl<T: Tracer> wide::Task for PathByPath<'_, T> {
                 for x in rect.x..rect.x + rect.width {
                     let pixel = u64::from(y) * columns + u64::from(x);
                     for sample in samples.clone() {
-                        let mut random = Random::new(self.seed, pixel, sample);
-                        let film_u = [random.f64(), random.f64()];
-                        let lens_u = [random.f64(), random.f64()];
+                        let mut random = Random::new(seed, pixel, sample);
+                        let draws = FirstDraws::new(sampler, seed, pixel, sample);
+                        let film_u = draws.film(&mut random);
+                        let lens_u = if has_lens { draws.lens(&mut random) } else { [0.5; 2] };
                         let ray = scene.camera.ray([x, y], film_u, lens_u);
-                        tile.add(x, y, &self.tracer.trace(ray, &mut memory, &mut random));
+                        tile.add(x, y, &self.tracer.trace(ray, &mut memory, draws, &mut random));
                     }
                 }
             }

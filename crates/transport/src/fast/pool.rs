@@ -7,6 +7,7 @@
 use glam::{DVec3, Vec3};
 use tyndall_lanes::Random;
 
+use crate::first_draws::FirstDraws;
 use crate::found_light::Turned;
 use crate::path_layers::FirstMet;
 
@@ -84,6 +85,8 @@ impl Rays {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Path {
     pub pixel: Pixel,
+    /// Numbers up to its first turn.
+    pub draws: FirstDraws,
     /// Start of the current ray.
     pub position: Vec3,
     /// Direction of the path's own ray (not of a shadow ray).

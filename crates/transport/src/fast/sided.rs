@@ -9,6 +9,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use crate::emission::{Glow, draw_glow, path_weight, source_at};
+use crate::first_draws::FirstDraws;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, Way, is_plain};
 
@@ -138,10 +139,11 @@ pub(super) fn draw_light(
     scene: &Scene,
     from: DVec3,
     value: impl Fn(DVec3) -> (DVec3, f64),
+    draws: FirstDraws,
     random: &mut Random,
 ) -> Option<Direct> {
-    let (number, probability) = scene.choose_light(from, random.f64())?;
-    light_of(scene, (number, probability), from, value, random)
+    let (number, probability) = scene.choose_light(from, draws.light(random))?;
+    light_of(scene, (number, probability), from, value, draws, random)
 }
 
 /// The same of the light of this number, drawn with this probability.
@@ -151,11 +153,13 @@ pub(super) fn light_of(
     (number, probability): (usize, f64),
     from: DVec3,
     value: impl Fn(DVec3) -> (DVec3, f64),
+    draws: FirstDraws,
     random: &mut Random,
 ) -> Option<Direct> {
     let light = &scene.lights[number];
     if let Light::Volume(glow) = light {
-        let Glow { position, toward, distance, density } = draw_glow(glow, from, random)?;
+        let u = draws.light_place_inside(random);
+        let Glow { position, toward, distance, density } = draw_glow(glow, from, u)?;
         let (value, path_pdf) = value(toward);
         let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
         let source = source_at(&scene.volumes[glow.volume()], position, toward);
@@ -164,7 +168,7 @@ pub(super) fn light_of(
         let arriving = arriving.as_vec3();
         return Some(Direct { light: number, unshadowed, arriving, is_glow: true, toward, distance });
     }
-    let sample = light.sample(from, [random.f64(), random.f64()]);
+    let sample = light.sample(from, draws.light_place(random));
     let (value, path_pdf) = value(sample.toward);
     let light_pdf = probability * sample.pdf;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + path_pdf) };

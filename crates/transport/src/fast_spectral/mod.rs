@@ -35,6 +35,8 @@ use self::pool::{Lanes, OpenSample, OpenSamples, PARTS, POOL, STRATA};
 use self::scene::CHANNELS;
 use self::vertex::List;
 use crate::fast::{Pixel, Work};
+use crate::first_draws::FirstDraws;
+use crate::render::RenderOptions;
 use crate::wide;
 
 pub(crate) use self::scene::FastSpectralScene;
@@ -46,16 +48,16 @@ const ROUNDS_BETWEEN_LOOKS: u32 = 256;
 pub(crate) fn render_tiles(
     scene: &FastSpectralScene,
     tiles: &mut [FilmTile],
-    seed: u64,
+    options: &RenderOptions,
     cancel: &AtomicBool,
 ) -> bool {
-    wide::run(Engine::new(scene, tiles, seed, cancel))
+    wide::run(Engine::new(scene, tiles, options, cancel))
 }
 
 struct Engine<'a> {
     scene: &'a FastSpectralScene<'a>,
     tiles: &'a mut [FilmTile],
-    seed: u64,
+    options: &'a RenderOptions,
     cancel: &'a AtomicBool,
     lanes: Box<Lanes>,
     open: OpenSamples,
@@ -109,11 +111,11 @@ impl<'a> Engine<'a> {
     fn new(
         scene: &'a FastSpectralScene<'a>,
         tiles: &'a mut [FilmTile],
-        seed: u64,
+        options: &'a RenderOptions,
         cancel: &'a AtomicBool,
     ) -> Self {
         let (lanes, open, work) = (Lanes::new(), OpenSamples::new(), Work::default());
-        Self { scene, tiles, seed, cancel, lanes, open, work, starting: None, active: 0 }
+        Self { scene, tiles, options, cancel, lanes, open, work, starting: None, active: 0 }
     }
 
     /// Gives the place to the next path there is.
@@ -154,9 +156,11 @@ impl<'a> Engine<'a> {
     fn start(&mut self, pixel: Pixel, sample: u64) {
         let scene = self.scene;
         let number = u64::from(pixel.y) * u64::from(scene.scene.resolution[0]) + u64::from(pixel.x);
-        let mut random = Random::new(self.seed, number, sample);
-        let film_u = [random.f64(), random.f64()];
-        let lens_u = [random.f64(), random.f64()];
+        let (seed, sampler) = (self.options.seed, self.options.sampler);
+        let mut random = Random::new(seed, number, sample);
+        let draws = FirstDraws::new(sampler, seed, number, sample);
+        let film_u = draws.film(&mut random);
+        let lens_u = draws.lens(&mut random);
         let ray = scene.scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
         let within = scene.volume.interval(&scene.volume.local_ray(&ray), (0.0, f64::INFINITY));
         let Some((enter, leave)) = within else {

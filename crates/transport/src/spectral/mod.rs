@@ -378,8 +378,8 @@ impl<'a> SpectralScene<'a> {
         L: Fn(DVec3) -> (Ray, Presence),
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec4::ZERO };
-        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, random)
-        else {
+        let u = [random.f64(), random.f64(), random.f64()];
+        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, u) else {
             return DVec4::ZERO;
         };
         let (value, pdf) = (vertex.value)(toward);

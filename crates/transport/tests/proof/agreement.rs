@@ -69,9 +69,13 @@ pub fn batches(scene: &Scene, integrator: Integrator, seed: u64, count: u64) -> 
 
 /// The same with any options.
 pub fn batches_with(scene: &Scene, options: RenderOptions, count: u64) -> Batches {
+    batches_of((0..count).map(|batch| render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES)))
+}
+
+/// The values of independent films of [`EDGE`] pixels each way.
+pub fn batches_of(films: impl Iterator<Item = Film>) -> Batches {
     let mut all: Batches = Vec::new();
-    for batch in 0..count {
-        let film = render_with(scene, options, batch * SAMPLES..(batch + 1) * SAMPLES);
+    for film in films {
         let means = region_means(&film);
         if all.is_empty() {
             all = means.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
@@ -90,8 +94,23 @@ pub fn assert_same(name: &str, first: (&Scene, Integrator), second: (&Scene, Int
 }
 
 /// Fails if any region of any quantity differs significantly between the batches of two integrators.
-pub fn assert_same_batches(name: &str, integrators: [Integrator; 2], [a, b]: &[Batches; 2]) {
-    let limit = two_sided_quantile(1e-3 / a.len() as f64);
+pub fn assert_same_batches(name: &str, integrators: [Integrator; 2], batches: &[Batches; 2]) {
+    let verdict = difference(1e-3, name, integrators, batches);
+    let share = verdict.unwrap_or_else(|difference| panic!("{difference}"));
+    assert!(share * 3.0 > 1.0, "{name}: only {share} of all quantities are lit");
+}
+
+/// The share of quantities that are lit, if no region of any differs at this `level`, shared out among them all.
+///
+/// # Errors
+/// The first that does.
+pub fn difference(
+    level: f64,
+    name: &str,
+    integrators: [Integrator; 2],
+    [a, b]: &[Batches; 2],
+) -> Result<f64, String> {
+    let limit = two_sided_quantile(level / a.len() as f64);
     let mut lit = 0;
     let mut worst: f64 = 0.0;
     for ((quantity, a), (_, b)) in a.iter().zip(b) {
@@ -107,15 +126,15 @@ pub fn assert_same_batches(name: &str, integrators: [Integrator; 2], [a, b]: &[B
         let degrees = (va + vb).powi(2) / (va * va + vb * vb).max(f64::MIN_POSITIVE) * (a.len() - 1) as f64;
         let z = normal_from_student(difference / error, degrees.max(1.0));
         worst = worst.max(z.abs());
-        assert!(
-            z.abs() < limit,
-            "{name}: {quantity}: {:?} has {mean_a} +- {error_a}, {:?} {mean_b} +- {error_b}, z = {z}",
-            integrators[0],
-            integrators[1]
-        );
+        if z.abs() >= limit {
+            let [first, second] = integrators;
+            return Err(format!(
+                "{name}: {quantity}: {first:?} has {mean_a} +- {error_a}, {second:?} {mean_b} +- {error_b}, z = {z}",
+            ));
+        }
     }
     eprintln!("{name}: {lit} of {} quantities are lit, greatest |z| {worst:.2} below {limit:.2}", a.len());
-    assert!(lit * 3 > a.len(), "{name}: only {lit} of {} quantities are lit", a.len());
+    Ok(lit as f64 / a.len() as f64)
 }
 
 fn assert_integrators_agree(name: &str, scene: &Scene) {

@@ -4,14 +4,15 @@ use std::ops::Range;
 
 use tyndall_film::{Film, Layers};
 use tyndall_scene::Scene;
-use tyndall_scene::description::Integrator;
+use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 pub const BOTH: [Integrator; 2] = [Integrator::Reference, Integrator::Fast];
 
 /// One thread and the default estimators.
 pub fn options(integrator: Integrator, seed: u64) -> RenderOptions {
-    RenderOptions { integrator, seed, threads: 1, estimators: Estimators::default() }
+    let (sampler, estimators) = (Sampler::Independent, Estimators::default());
+    RenderOptions { integrator, sampler, seed, threads: 1, estimators }
 }
 
 /// A film of `samples` of every pixel, rendered on one thread; no sample was refused.

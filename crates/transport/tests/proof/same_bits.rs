@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use tyndall_film::{Film, Layers};
+use tyndall_scene::description::Sampler;
 use tyndall_scene::{ChromaticMedium, Scene};
 use tyndall_transport::RenderOptions;
 
@@ -44,11 +45,12 @@ fn threads_and_passes_change_no_bit() {
     let mut chromatic = grey.clone();
     let mu_t = DVec3::new(1.0, 2.0, 8.0);
     chromatic.volumes[1].medium.chromatic = Some(Arc::new(ChromaticMedium { mu_t, phase_functions: None }));
-    let all = BOTH.map(|integrator| (&grey, integrator));
-    for (scene, integrator) in all.into_iter().chain([(&chromatic, BOTH[0])]) {
+    let all = BOTH.map(|integrator| (&grey, integrator)).into_iter().chain([(&chromatic, BOTH[0])]);
+    let samplers = [Sampler::Independent, Sampler::Sobol];
+    for ((scene, integrator), sampler) in all.flat_map(|one| samplers.map(|sampler| (one, sampler))) {
         let film = |threads, passes: &[[u64; 2]]| {
             let mut film = Film::new(150, 90, Layers::ALL).expect("a small picture");
-            let options = RenderOptions { threads, ..options(integrator, 7) };
+            let options = RenderOptions { threads, sampler, ..options(integrator, 7) };
             for &[start, end] in passes {
                 add_pass(scene, &mut film, start..end, options);
             }
@@ -57,17 +59,20 @@ fn threads_and_passes_change_no_bit() {
         let whole = film(1, &[[0, 12]]);
         // Films are large to print: only whether they are equal is asserted.
         for threads in [2, 3] {
-            assert!(whole == film(threads, &[[0, 12]]), "{integrator:?}: {threads} threads");
+            assert!(whole == film(threads, &[[0, 12]]), "{integrator:?}, {sampler:?}: {threads} threads");
         }
-        assert!(whole == film(1, &[[0, 5], [5, 12]]), "{integrator:?}: two passes");
+        assert!(whole == film(1, &[[0, 5], [5, 12]]), "{integrator:?}, {sampler:?}: two passes");
         assert!(
             whole == film(3, &[[5, 12], [0, 5]]),
-            "{integrator:?}: two passes in the other order, three threads"
+            "{integrator:?}, {sampler:?}: two passes in the other order, three threads"
         );
 
         let mut left = film(1, &[[0, 5]]);
         left.merge(&film(2, &[[5, 12]])).expect("disjoint samples of one picture");
-        assert!(whole == left, "{integrator:?}: two films merged");
-        assert!(whole != film(1, &[[1, 13]]), "{integrator:?}: other samples are other pictures");
+        assert!(whole == left, "{integrator:?}, {sampler:?}: two films merged");
+        assert!(
+            whole != film(1, &[[1, 13]]),
+            "{integrator:?}, {sampler:?}: other samples are other pictures"
+        );
     }
 }

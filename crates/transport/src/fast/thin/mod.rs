@@ -31,6 +31,7 @@ use super::path_by_path::Tracer;
 use super::sided::{Direct, light_of};
 use super::volume::{FastGrid, Phase};
 use crate::emission::source_at;
+use crate::first_draws::FirstDraws;
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
 use crate::roulette::survival;
@@ -149,7 +150,7 @@ impl Tracer for Thin<'_> {
     }
 
     #[inline(always)]
-    fn trace(&self, ray: Ray, profile: &mut Profile, random: &mut Random) -> Sample {
+    fn trace(&self, ray: Ray, profile: &mut Profile, mut first: FirstDraws, random: &mut Random) -> Sample {
         let scene = self.scene;
         let mut layers = PathLayers::<Vec3>::default();
         let mut path = Path { ray, throughput: Vec3::ONE, refraction: 1.0, turned: None, draws: 1 };
@@ -168,7 +169,7 @@ impl Tracer for Thin<'_> {
             };
             layers.add(scatterings, through * found.as_vec3());
             if is_crossed && self.glow.is_some() {
-                layers.emission += path.throughput * self.emission(&path, turns, profile, random);
+                layers.emission += path.throughput * self.emission(&path, first, turns, profile, random);
             }
             let surface =
                 way.hit.map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
@@ -181,7 +182,7 @@ impl Tracer for Thin<'_> {
 
             let goes_on = self.chance_of_collision(is_crossed, profile, surface.as_ref());
             let draws = self.draws[usize::from(turns > 0)];
-            let collision = is_crossed.then(|| self.collide(&path, profile, random));
+            let collision = is_crossed.then(|| self.collide(&path, profile, first.distance(random), random));
             if let Some(collision) = &collision {
                 let value = |toward: DVec3| {
                     let phase = f64::from(self.phase.value(collision.before, toward.as_vec3()));
@@ -213,7 +214,7 @@ impl Tracer for Thin<'_> {
                         break;
                     }
                     scatterings += 1;
-                    let onward = self.phase.sample(collision.before, random.f32x2());
+                    let onward = self.phase.sample(collision.before, first.direction(random));
                     let pdf = f64::from(self.phase.value(collision.before, onward));
                     path.turned = Some((collision.position, pdf * goes_on));
                     path.ray = Ray { origin: collision.position, direction: onward.as_dvec3().normalize() };
@@ -231,6 +232,7 @@ impl Tracer for Thin<'_> {
                 }
                 _ => break,
             }
+            first = FirstDraws::Independent;
         }
         layers.into_sample(|colour| colour.as_dvec3())
     }
@@ -263,11 +265,19 @@ impl Thin<'_> {
 
     /// Light that the medium sends out along the path's ray.
     #[inline(always)]
-    fn emission(&self, path: &Path, turns: u32, profile: &Profile, random: &mut Random) -> Vec3 {
+    fn emission(
+        &self,
+        path: &Path,
+        first: FirstDraws,
+        turns: u32,
+        profile: &Profile,
+        random: &mut Random,
+    ) -> Vec3 {
         let mut sum = Vec3::ZERO;
         let places = EMISSION_PLACES[usize::from(turns > 0)];
+        let shift = first.emission(random);
         for place in 0..places {
-            let u = (place as f32 + random.f32()) / places as f32;
+            let u = (place as f32 + shift) / places as f32;
             let Place { t, over_pdf } = profile.emission(u);
             let position = path.ray.at(f64::from(t));
             let source = source_at(self.volume, position, path.ray.direction);
@@ -284,8 +294,8 @@ impl Thin<'_> {
 
     /// A forced collision of the path.
     #[inline(always)]
-    fn collide(&self, path: &Path, profile: &Profile, random: &mut Random) -> Collision {
-        let Place { t, over_pdf } = profile.collision(random.f32());
+    fn collide(&self, path: &Path, profile: &Profile, u: f32, random: &mut Random) -> Collision {
+        let Place { t, over_pdf } = profile.collision(u);
         let position = path.ray.at(f64::from(t));
         let density = self.volume.density_at(self.volume.world_to_local.transform_point3(position)) as f32;
         let albedo = self.volume.albedo_at(position).as_vec3();
@@ -332,7 +342,7 @@ impl Thin<'_> {
             let Some(chosen) = self.choose_light(from, choice, draw, draws) else { continue };
             let direct = match &self.scene.lights[chosen.0] {
                 Light::Volume(_) => self.draw_glow(chosen, from, &value, draws, random),
-                _ => light_of(self.scene, chosen, from, &value, random),
+                _ => light_of(self.scene, chosen, from, &value, FirstDraws::Independent, random),
             };
             let Some(Direct { unshadowed, is_glow, toward, distance, .. }) = direct else { continue };
             if unshadowed == Vec3::ZERO {

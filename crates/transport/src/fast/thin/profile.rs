@@ -32,7 +32,7 @@ const EVEN_SHARE: f32 = 0.03;
 
 /// A ray in the local voxel coordinates of a grid; distances along it are those of the world.
 #[derive(Clone, Copy)]
-pub(super) struct LocalRay {
+pub(in super::super) struct LocalRay {
     pub origin: Vec3,
     pub direction: Vec3,
     pub enter: f32,
@@ -111,7 +111,7 @@ impl LocalRay {
 }
 
 /// The profile of a ray.
-pub(super) struct Profile {
+pub(in super::super) struct Profile {
     ray: LocalRay,
     count: usize,
     step: f32,
@@ -124,7 +124,7 @@ pub(super) struct Profile {
 }
 
 /// A place along a ray, and 1 over its density per length.
-pub(super) struct Place {
+pub(in super::super) struct Place {
     pub t: f32,
     pub over_pdf: f32,
 }

@@ -43,7 +43,7 @@ fn assert_same_pictures(name: &str, integrators: [Integrator; 2], pair: &[Batche
 }
 
 /// Mean of each quantity over all regions, which stand beside each other.
-fn whole(batches: &Batches) -> Batches {
+pub fn whole(batches: &Batches) -> Batches {
     let layer = |name: &str| name.split(" at").next().unwrap_or_default().to_owned();
     let regions = batches.chunk_by(|(a, _), (b, _)| layer(a) == layer(b));
     regions
@@ -57,7 +57,7 @@ fn whole(batches: &Batches) -> Batches {
 }
 
 /// Materials that absorb nothing, and two that do.
-const MATERIALS: &str = r#"
+pub const MATERIALS: &str = r#"
     [[material]]
     name = "white"
     type = "diffuse"
