@@ -151,11 +151,11 @@ def peers(tyndall, threads):
     return [vector, scalar, Cycles(threads), Pbrt(threads)]
 
 
-def build(features=()):
-    """Compiles the release build; the program's path. With features it stands apart, so that both are kept."""
-    folder = environment.ROOT / "target" / ("bench-" + "-".join(features) if features else "")
-    command = ["cargo", "build", "--release", "--locked", "-p", "tyndall", "--target-dir", str(folder)]
-    command += ["--features", ",".join(features)] if features else []
-    if subprocess.run(command, cwd=environment.ROOT).returncode != 0:
+def build():
+    """Compiles the release build; the program's path."""
+    command = ["cargo", "build", "--release", "--locked", "-p", "tyndall", "--message-format", "json-render-diagnostics"]
+    done = subprocess.run(command, cwd=environment.ROOT, stdout=subprocess.PIPE, text=True)
+    if done.returncode != 0:
         sys.exit("the release build failed")
-    return folder / "release" / "tyndall"
+    built = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    return next(one["executable"] for one in reversed(built) if one.get("executable"))

@@ -14,6 +14,7 @@ use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
 use tyndall_scene::description::{FilmDescription, Integrator, Layer, SceneDescription};
 use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
+use tyndall_transport::counters;
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
 use crate::Done;
@@ -335,6 +336,9 @@ fn render(
         }
     }
     progress.finish();
+    if counters::COUNTED {
+        tell(format!("counters: {}", control.counters.counters().json()));
+    }
     Ok(end)
 }
 

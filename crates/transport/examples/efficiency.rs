@@ -7,7 +7,7 @@
 //! time of rendering alone, on as many threads as there are cores; `cpu` is the time that the cores spent on it, over
 //! their number, which other work on the machine disturbs less, and by which `efficiency` is computed.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use tyndall_film::comparison::{Picture, compare};
@@ -90,7 +90,7 @@ fn measure(letter: &str, file: &str, noise: f64, samples: u64, seeds: u64, integ
     );
 }
 
-fn read(path: &PathBuf) -> Scene {
+fn read(path: &Path) -> Scene {
     let document = SceneDocument::read(path).expect("the scene can be read");
     let description = document.description().expect("the scene is valid");
     build(&description, document.folder()).expect("the scene can be built").scene

@@ -10,6 +10,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Ray, Scene};
 
+use crate::counters::SharedCounters;
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::reference;
@@ -35,6 +36,8 @@ pub struct Control {
     pub cancel: AtomicBool,
     /// Samples (paths) finished so far, over all passes.
     pub samples: AtomicU64,
+    /// What all passes did, as far as it is [counted](crate::counters).
+    pub counters: SharedCounters,
 }
 
 /// How a pass ended.
@@ -77,6 +80,7 @@ pub fn render_pass(
                     trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| spectral.trace(ray, random))
                 }
             };
+            control.counters.collect();
             if !complete {
                 return;
             }
