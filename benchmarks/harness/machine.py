@@ -25,6 +25,16 @@ def describe(tyndall, threads):
     }
 
 
+def command(name, arguments):
+    """The command without the options that name places on this machine."""
+    kept, places = [], ("--venv", "--tyndall", "--out")
+    for at, argument in enumerate(arguments):
+        of_place = at > 0 and arguments[at - 1] in places
+        if argument.split("=")[0] not in places and not of_place:
+            kept.append(argument)
+    return " ".join([f"benchmarks/{name}", *kept])
+
+
 def processor():
     """The model of the processor, as the system calls it."""
     try:
