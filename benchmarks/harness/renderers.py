@@ -61,7 +61,7 @@ class Mitsuba:
             self.samples = {"A": 8, "B": 128, "C": 128, "D": 256, "E": 64, "G": 4}
         else:
             # The integrator with emission is written for the variants that compile.
-            self.samples = {"A": 2, "B": 16, "C": 16, "E": 8, "G": 1}
+            self.samples = {"A": 2, "B": 64, "C": 64, "E": 32, "G": 1}
 
     def missing(self):
         if not environment.has(sys.executable, ["mitsuba"]):
