@@ -10,7 +10,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Ray, Scene};
 
-use crate::counters::SharedCounters;
+use crate::counters::{self, Event, SharedCounters};
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::reference;
@@ -80,6 +80,9 @@ pub fn render_pass(
                     trace_tiles(scene, &mut tiles, seed, cancel, |ray, random| spectral.trace(ray, random))
                 }
             };
+            if complete {
+                counters::count(Event::Path, tiles.iter().map(sample_count).sum());
+            }
             control.counters.collect();
             if !complete {
                 return;

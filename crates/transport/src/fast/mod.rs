@@ -195,7 +195,6 @@ impl<'a> Engine<'a> {
                     }
                 }
                 Next::Record => {
-                    counters::count(Event::Path, 1);
                     self.record(slot);
                     Next::Start
                 }
