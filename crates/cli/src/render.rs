@@ -14,6 +14,7 @@ use miette::{IntoDiagnostic, miette};
 use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
 use tyndall_scene::description::{FilmDescription, Integrator, Layer, Sampler, SceneDescription};
 use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
+use tyndall_transport::counters;
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer};
 
 use crate::Done;
@@ -359,6 +360,9 @@ fn render(
         }
     }
     progress.finish();
+    if counters::COUNTED {
+        tell(format!("counters: {}", control.counters.counters().json()));
+    }
     Ok(end)
 }
 

@@ -6,6 +6,7 @@
 //! of them. [`walk`] follows light the other way, from where it enters, for fluxes.
 
 pub mod along_ray;
+pub mod counters;
 pub mod distance;
 mod emission;
 mod equiangular_light;

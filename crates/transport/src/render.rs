@@ -10,6 +10,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Ray, Scene};
 
+use crate::counters::{self, Event, SharedCounters};
 use crate::estimators::Estimators;
 use crate::fast::{self, FastScene};
 use crate::fast_spectral::{self, FastSpectralScene};
@@ -40,6 +41,8 @@ pub struct Control {
     pub cancel: AtomicBool,
     /// Samples (paths) finished so far, over all passes.
     pub samples: AtomicU64,
+    /// What all passes did, as far as it is [counted](crate::counters).
+    pub counters: SharedCounters,
 }
 
 /// How a pass ended.
@@ -118,6 +121,10 @@ impl<'a> Renderer<'a> {
                         })
                     }
                 };
+                if complete {
+                    counters::count(Event::Path, tiles.iter().map(sample_count).sum());
+                }
+                control.counters.collect();
                 if !complete {
                     return;
                 }

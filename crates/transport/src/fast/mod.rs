@@ -25,6 +25,7 @@ mod volume;
 pub(crate) use volume::FastScene;
 use volume::FastVolume;
 
+use crate::counters::{self, Event};
 use crate::emission::{path_weight, weighted_emission_along};
 use crate::first_draws::FirstDraws;
 use crate::found_light;
@@ -121,8 +122,10 @@ impl wide::Task for Engine<'_> {
         let (mut tentative, mut left, mut happened) = (List::new(), List::new(), List::new());
         let mut round = 0_u32;
         while self.active > 0 {
+            let (clock, active) = (counters::clock(), self.active);
             march::step(&mut self.rays, &self.scene.volumes, &mut tentative, &mut left);
             march::collide(&mut self.rays, &self.scene.volumes, &tentative, &mut happened);
+            counters::count_round(clock, active, &self.rays.shadow, tentative.slots(), happened.slots());
             for &slot in left.slots() {
                 let slot = usize::from(slot);
                 let next = Next::Enter(self.paths[slot].place as usize + 1);
@@ -192,6 +195,7 @@ impl<'a> Engine<'a> {
                     self.begin_ray(slot, false, end)
                 }
                 Next::LookAtLight => {
+                    counters::count(Event::ShadowRay, 1);
                     let distance = self.paths[slot].light_distance;
                     self.begin_ray(slot, true, distance)
                 }
@@ -210,6 +214,7 @@ impl<'a> Engine<'a> {
                     }
                 }
                 Next::Finish => {
+                    counters::count(Event::Segment, 1);
                     if self.scene.shines {
                         self.gather(slot);
                     }
@@ -265,6 +270,7 @@ impl<'a> Engine<'a> {
     /// Finds the surface at which the path's ray ends; its distance.
     #[inline(never)]
     fn look_ahead(&mut self, slot: usize) -> f32 {
+        counters::count(Event::Intersection, 1);
         self.sided[slot].look_ahead(self.scene.scene, &mut self.rays.random[slot]);
         self.sided[slot].way.end as f32
     }
@@ -590,6 +596,7 @@ fn choose_direct(
     let mut boost = 1.0;
     if traced < 1.0 {
         if random.f32() >= traced {
+            counters::count(Event::ShadowSpared, 1);
             return None;
         }
         boost = 1.0 / traced;

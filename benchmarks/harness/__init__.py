@@ -1,0 +1,1 @@
+"""What the commands `benchmarks/bench`, `growth` and `roof` share, one idea a file."""
