@@ -14,7 +14,6 @@ enum Set {
     Lens,
     LightPlace,
     Direction,
-    Emission,
     /// The distance in the first volume, and which light is asked from there; plus the number of the volume.
     DistanceAndLight,
 }
@@ -97,24 +96,6 @@ impl FirstDraws {
                 let u = stratified.point1(Set::DistanceAndLight as u32 + volume as u32);
                 -tyndall_lanes::ln(1.0 - u)
             }
-        }
-    }
-
-    /// Uniform number for the distance of the camera ray's collision in the only volume.
-    #[inline(always)]
-    pub fn distance(&self, random: &mut Random) -> f32 {
-        match self {
-            Self::Independent => random.f32(),
-            Self::Stratified(stratified) => stratified.point1(Set::DistanceAndLight as u32),
-        }
-    }
-
-    /// Uniform number for the place on the camera's ray whose emission is taken.
-    #[inline(always)]
-    pub fn emission(&self, random: &mut Random) -> f32 {
-        match self {
-            Self::Independent => random.f32(),
-            Self::Stratified(stratified) => stratified.point1(Set::Emission as u32),
         }
     }
 

@@ -8,8 +8,9 @@ use tyndall_scene::{Density, Scene, Volume};
 
 use super::volume::FastGrid;
 
-/// Greatest number of places in a table: 1 MiB.
-const PLACES: f64 = (1 << 18) as f64;
+/// Number of places in a table, about: 128 KiB, which leave room in a core's cache. Eight times as many know more, and cost
+/// scenes A and G more time than that saves.
+const PLACES: f64 = (1 << 15) as f64;
 
 /// The places of a table: a lattice over the box around all volumes. Positions are relative to the scene's centre.
 #[derive(Clone, Copy)]
@@ -57,18 +58,6 @@ impl Lattice {
         (0..8).map(|bits| value(position + corner(bits))).sum::<f32>() / 8.0
     }
 
-    /// The table with half of each value from the places around it, so that it is 0 only away from what is not.
-    pub fn spread(&self, table: &[f32]) -> Vec<f32> {
-        let spacing = 1.0 / self.per_length;
-        self.table(|position| {
-            let around = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
-                self.nearest(table, position + axis * spacing)
-                    + self.nearest(table, position - axis * spacing)
-            });
-            0.5 * self.nearest(table, position) + around.iter().sum::<f32>() / 12.0
-        })
-    }
-
     /// A table's values mixed trilinearly; outside the box, those at its border.
     #[inline]
     pub fn lookup(&self, table: &[f32], position: Vec3) -> f32 {
@@ -92,46 +81,6 @@ impl Lattice {
         let [_, ny, nz] = self.places;
         let p = self.within(position) + 0.5;
         table[(p.x as usize * ny + p.y as usize) * nz + p.z as usize]
-    }
-
-    /// The greatest optical thickness along any row of places parallel to an axis.
-    pub fn greatest_thickness(&self, mu_t: &[f32]) -> f32 {
-        let [nx, ny, nz] = self.places;
-        let row = |start: usize, stride: usize, count: usize| {
-            (0..count).map(|i| mu_t[start + i * stride]).sum::<f32>() / self.per_length
-        };
-        let along_x = (0..ny * nz).map(|start| row(start, ny * nz, nx));
-        let along_y = (0..nx * nz).map(|number| row(number / nz * (ny * nz) + number % nz, nz, ny));
-        let along_z = (0..nx * ny).map(|number| row(number * nz, 1, nz));
-        along_x.chain(along_y).chain(along_z).fold(0.0, f32::max)
-    }
-
-    /// The area that light which is sent out like this seems to come from, on the mean of the three axes: its sum over
-    /// the mean sum along a line through it.
-    pub fn apparent_area(&self, source: &[f32]) -> f64 {
-        let [nx, ny, nz] = self.places;
-        let mean_line = |starts: &mut dyn Iterator<Item = usize>, stride: usize, count: usize| {
-            let (mut sum, mut squares) = (0.0, 0.0);
-            for start in starts {
-                let line: f64 = (0..count).map(|i| f64::from(source[start + i * stride])).sum();
-                sum += line;
-                squares += line * line;
-            }
-            squares / sum
-        };
-        let lines = mean_line(&mut (0..ny * nz), ny * nz, nx)
-            + mean_line(&mut (0..nx * nz).map(|number| number / nz * (ny * nz) + number % nz), nz, ny)
-            + mean_line(&mut (0..nx * ny).map(|number| number * nz), 1, nz);
-        let total: f64 = source.iter().map(|&x| f64::from(x)).sum();
-        3.0 * total / lines / f64::from(self.per_length).powi(2)
-    }
-
-    /// A point of the cube around a place, by three uniform numbers.
-    #[inline]
-    pub fn within_place(&self, number: usize, u: [f32; 3]) -> Vec3 {
-        let [_, ny, nz] = self.places;
-        let at = [number / (ny * nz), number / nz % ny, number % nz].map(|i| i as f32);
-        self.min + (Vec3::from_array(at) + Vec3::from_array(u) - 0.5) / self.per_length
     }
 
     #[inline]

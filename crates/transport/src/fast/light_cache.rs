@@ -33,15 +33,15 @@ enum Toward {
 
 impl LightCache {
     /// The tables of a scene, if any light of it can have one.
-    pub(super) fn new(scene: &Scene, rough: &Rough, centre: DVec3) -> Option<LightCache> {
+    pub fn new(scene: &Scene, centre: DVec3) -> Option<LightCache> {
         let toward: Vec<Option<Toward>> = scene.lights.iter().map(|light| toward(light, centre)).collect();
         if !(1..=GREATEST_LIGHTS).contains(&toward.iter().flatten().count()) {
             return None;
         }
-        let Rough { lattice, mu_t } = rough;
-        let table = |toward: &Toward| lattice.table(|from| optical_thickness(lattice, mu_t, from, toward));
+        let Rough { lattice, mu_t } = Rough::new(scene, centre)?;
+        let table = |toward: &Toward| lattice.table(|from| optical_thickness(&lattice, &mu_t, from, toward));
         let tables = toward.iter().map(|toward| toward.as_ref().map(table)).collect();
-        Some(LightCache { lattice: *lattice, tables })
+        Some(LightCache { lattice, tables })
     }
 
     /// The transmittance to the light of this number from a place relative to the scene's centre, towards `toward`;
@@ -66,7 +66,7 @@ impl LightCache {
     }
 }
 
-/// Optical thickness from a place to a light, by steps of two thirds of the places' distance.
+/// Optical thickness from a place to a light, by steps as long as places are apart.
 fn optical_thickness(lattice: &Lattice, mu_t: &[f32], from: Vec3, toward: &Toward) -> f32 {
     let (direction, length) = match toward {
         Toward::Direction(direction) => (*direction, f32::INFINITY),
@@ -77,10 +77,10 @@ fn optical_thickness(lattice: &Lattice, mu_t: &[f32], from: Vec3, toward: &Towar
     if length <= 0.0 || !length.is_finite() {
         return 0.0;
     }
-    let steps = (length * lattice.per_length * 1.5).ceil().max(1.0);
+    let steps = (length * lattice.per_length).ceil().max(1.0);
     let step = length / steps;
     let place = |i: usize| from + direction * ((i as f32 + 0.5) * step);
-    (0..steps as usize).map(|i| lattice.lookup(mu_t, place(i))).sum::<f32>() * step
+    (0..steps as usize).map(|i| lattice.nearest(mu_t, place(i))).sum::<f32>() * step
 }
 
 /// Where a light is, if it is a point or a direction.

@@ -19,7 +19,6 @@ mod march;
 mod path_by_path;
 mod pool;
 mod sided;
-mod thin;
 mod volume;
 
 pub(crate) use volume::FastScene;
@@ -72,10 +71,9 @@ pub(crate) fn render_tiles(
     options: &RenderOptions,
     cancel: &AtomicBool,
 ) -> bool {
-    match (&scene.homogeneous, &scene.thin) {
-        (Some(homogeneous), _) => wide::run(PathByPath { tracer: homogeneous, tiles, options, cancel }),
-        (None, Some(thin)) => wide::run(PathByPath { tracer: thin, tiles, options, cancel }),
-        (None, None) => wide::run(Engine::new(scene, tiles, options, cancel)),
+    match &scene.homogeneous {
+        Some(homogeneous) => wide::run(PathByPath { tracer: homogeneous, tiles, options, cancel }),
+        None => wide::run(Engine::new(scene, tiles, options, cancel)),
     }
 }
 

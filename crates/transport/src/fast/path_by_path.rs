@@ -12,15 +12,10 @@ use crate::wide;
 
 /// What traces paths.
 pub(super) trait Tracer {
-    /// Memory that one path leaves to the next.
-    type Memory;
-
     fn scene(&self) -> &Scene;
 
-    fn memory(&self) -> Self::Memory;
-
     /// One estimate of the radiance that arrives along `ray`.
-    fn trace(&self, ray: Ray, memory: &mut Self::Memory, draws: FirstDraws, random: &mut Random) -> Sample;
+    fn trace(&self, ray: Ray, random: &mut Random) -> Sample;
 }
 
 /// All samples of some tiles.
@@ -38,7 +33,6 @@ impl<T: Tracer> wide::Task for PathByPath<'_, T> {
         let columns = u64::from(scene.resolution[0]);
         let (seed, sampler) = (self.options.seed, self.options.sampler);
         let has_lens = scene.camera.has_lens();
-        let mut memory = self.tracer.memory();
         for tile in self.tiles {
             let (rect, samples) = (tile.rect(), tile.samples());
             for y in rect.y..rect.y + rect.height {
@@ -53,7 +47,7 @@ impl<T: Tracer> wide::Task for PathByPath<'_, T> {
                         let film_u = draws.film(&mut random);
                         let lens_u = if has_lens { draws.lens(&mut random) } else { [0.5; 2] };
                         let ray = scene.camera.ray([x, y], film_u, lens_u);
-                        tile.add(x, y, &self.tracer.trace(ray, &mut memory, draws, &mut random));
+                        tile.add(x, y, &self.tracer.trace(ray, &mut random));
                     }
                 }
             }

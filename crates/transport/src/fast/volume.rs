@@ -6,11 +6,9 @@ use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 use tyndall_volumes::bricks::Bricks;
 use tyndall_volumes::{BrickGrid, Filter};
 
-use super::coarse::Rough;
 use super::homogeneous::Homogeneous;
 use super::light_cache::LightCache;
 use super::pool::Path;
-use super::thin::Thin;
 use crate::emission::path_weight;
 
 /// Everything in f32 is kept relative to a point amid the volumes, so that a scene far from the origin loses no
@@ -27,8 +25,6 @@ pub(crate) struct FastScene<'a> {
     pub has_volume_lights: bool,
     /// Roughly what gets through to some of the lights.
     pub light_cache: Option<LightCache>,
-    /// The scene as one thin grid, if it is that.
-    pub(super) thin: Option<Thin<'a>>,
     /// The scene without a pool, if it is homogeneous.
     pub(super) homogeneous: Option<Homogeneous<'a>>,
 }
@@ -78,20 +74,8 @@ impl<'a> FastScene<'a> {
         let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let is_sided = !scene.surfaces.is_empty();
         let homogeneous = Homogeneous::new(scene);
-        let rough = Rough::new(scene, centre);
-        let light_cache = rough.as_ref().and_then(|rough| LightCache::new(scene, rough, centre));
-        let thin = rough.as_ref().and_then(|rough| Thin::new(scene, centre, rough, light_cache.as_ref()));
-        FastScene {
-            scene,
-            centre,
-            volumes,
-            shines,
-            is_sided,
-            has_volume_lights,
-            light_cache,
-            thin,
-            homogeneous,
-        }
+        let light_cache = LightCache::new(scene, centre);
+        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights, light_cache, homogeneous }
     }
 
     /// Weight of the glow that a path has found at its collision in a volume, against next-event estimation.

@@ -29,7 +29,6 @@ use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
 use self::lit_way::Lamps;
 use self::stretch::{Fog, Stretch};
 use super::path_by_path::Tracer;
-use crate::first_draws::FirstDraws;
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
 use crate::roulette::survival;
@@ -82,16 +81,12 @@ impl<'a> Homogeneous<'a> {
 }
 
 impl Tracer for Homogeneous<'_> {
-    type Memory = ();
-
     fn scene(&self) -> &Scene {
         self.scene
     }
 
-    fn memory(&self) {}
-
     #[inline(always)]
-    fn trace(&self, ray: Ray, (): &mut (), _: FirstDraws, random: &mut Random) -> Sample {
+    fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
         let scene = self.scene;
         let mut layers = PathLayers::<Vec3>::default();
         let mut path = Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None };
