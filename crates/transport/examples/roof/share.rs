@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use tyndall_film::{Film, Layers};
-use tyndall_scene::description::Integrator;
+use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Density, Scene, SceneDocument, build};
 use tyndall_transport::counters::{Counters, Event};
 use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
@@ -127,8 +127,13 @@ fn count(scene: &Scene, threads: usize) -> Counters {
     let [width, height] = scene.resolution;
     let mut film = Film::new(width, height, Layers::ALL).expect("the picture is small");
     film.open_range(0).expect("an empty film holds no samples");
-    let options =
-        RenderOptions { integrator: Integrator::Fast, seed: 1, threads, estimators: Estimators::default() };
+    let options = RenderOptions {
+        integrator: Integrator::Fast,
+        sampler: Sampler::Independent,
+        seed: 1,
+        threads,
+        estimators: Estimators::default(),
+    };
     let control = Control::default();
     render_pass(scene, &mut film, SAMPLES, &options, &control);
     control.counters.counters()
