@@ -68,6 +68,11 @@ impl<'a> Homogeneous<'a> {
             }
             _ => return None,
         };
+        // Without surfaces and lamps a path that is only ever scattered has less noise: none at all in a white furnace.
+        let is_lamp = |light: &Light| matches!(light, Light::Point(_) | Light::Spot(_) | Light::Area(_));
+        if scene.surfaces.is_empty() && !scene.lights.iter().any(is_lamp) {
+            return None;
+        }
         let glows = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let catches = scene.surfaces.shapes.iter().any(|shape| shape.is_shadow_catcher);
         // A tree of many lights says what matters at a place, and leaves out what may matter elsewhere on a ray.
