@@ -7,6 +7,8 @@
 //! time of rendering alone, on as many threads as there are cores; `cpu` is the time that the cores spent on it, over
 //! their number, which other work on the machine disturbs less, and by which `efficiency` is computed.
 
+mod cpu_time;
+
 use std::path::Path;
 use std::time::Instant;
 
@@ -74,11 +76,11 @@ fn measure(
     for seed in 1..=seeds {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let options = RenderOptions { integrator, sampler, seed, threads, estimators: Estimators::default() };
-        let (start, cpu_start) = (Instant::now(), cpu_seconds());
+        let (start, cpu_start) = (Instant::now(), cpu_time::seconds());
         let film = render(&scene, samples, &options);
         seconds += start.elapsed().as_secs_f64();
         cpu += cpu_start
-            .zip(cpu_seconds())
+            .zip(cpu_time::seconds())
             .map_or(start.elapsed().as_secs_f64(), |(a, b)| (b - a) / threads as f64);
         let [width, height] = scene.resolution.map(|edge| edge as usize);
         let picture = Picture { width, height, rgb: film.mean_image(), standard_error: None };
@@ -115,12 +117,4 @@ fn render(scene: &Scene, samples: u64, options: &RenderOptions) -> Film {
     render_pass(scene, &mut film, samples, options, &Control::default());
     film.complete_through(samples).expect("the pass was not cancelled");
     film
-}
-
-/// Time that this process has spent on all cores; where the system tells.
-fn cpu_seconds() -> Option<f64> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
-    Some(ticks / 100.0)
 }

@@ -6,6 +6,8 @@
 //! Times are from the order to the mean image; `cpu` is the time of all cores over their number, which other work on the
 //! machine disturbs less.
 
+mod cpu_time;
+
 use std::path::Path;
 use std::time::Instant;
 
@@ -44,7 +46,7 @@ fn main() {
 
 /// Renders one sample a pixel; seconds, and seconds of each core.
 fn look(scene: &mut Scene, camera: &CameraDescription, [width, height]: [u32; 2]) -> (f64, f64) {
-    let (start, cpu_start) = (Instant::now(), cpu_seconds());
+    let (start, cpu_start) = (Instant::now(), cpu_time::seconds().unwrap_or_default());
     scene.camera = Camera::new(camera, [width, height], None);
     scene.resolution = [width, height];
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -61,7 +63,7 @@ fn look(scene: &mut Scene, camera: &CameraDescription, [width, height]: [u32; 2]
     film.complete_through(1).expect("the pass was not cancelled");
     let image = film.mean_image();
     assert!(image.iter().flatten().all(|channel| channel.is_finite()));
-    (start.elapsed().as_secs_f64(), (cpu_seconds() - cpu_start) / threads as f64)
+    (start.elapsed().as_secs_f64(), (cpu_time::seconds().unwrap_or_default() - cpu_start) / threads as f64)
 }
 
 /// The camera on its way around the vertical axis through its target, by an angle in radians.
@@ -72,14 +74,4 @@ fn turned(camera: &CameraDescription, angle: f64) -> CameraDescription {
     let [x, z] = [x - tx, z - tz];
     let position = [tx + cos * x + sin * z, y, tz - sin * x + cos * z];
     CameraDescription { position, ..camera.clone() }
-}
-
-/// Time that this process has spent on all cores, to a hundredth of a second; 0 where the system does not tell.
-fn cpu_seconds() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields: Vec<&str> =
-        stat.rsplit_once(')').map_or(Vec::new(), |(_, rest)| rest.split_whitespace().collect());
-    let ticks =
-        [11, 12].map(|field| fields.get(field).and_then(|ticks| ticks.parse::<f64>().ok()).unwrap_or(0.0));
-    ticks.iter().sum::<f64>() * 0.01
 }

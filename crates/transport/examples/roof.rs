@@ -12,6 +12,7 @@
 //! what share of the roof the march reaches (see `roof/share.rs`).
 
 #[cfg(feature = "counters")]
+mod cpu_time;
 #[path = "roof/share.rs"]
 mod share;
 

@@ -19,6 +19,7 @@ use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
 use tyndall_volumes::BrickGrid;
 use tyndall_volumes::bricks::Bricks;
 
+use super::cpu_time;
 use super::thread_seconds;
 
 /// Enough samples that the pools are full for most of the time.
@@ -44,10 +45,10 @@ pub fn measure_all(roof: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
 
 fn measure(name: &str, scene: &Scene, threads: usize, roof: &dyn Fn(usize, usize) -> f64) -> String {
     let bytes: usize = grids(scene).map(BrickGrid::memory_bytes).sum();
-    let (start, cpu_start) = (Instant::now(), process_seconds());
+    let (start, cpu_start) = (Instant::now(), cpu_time::seconds());
     let counters = count(scene, threads);
     let wall = start.elapsed().as_secs_f64() * threads as f64;
-    let seconds = cpu_start.zip(process_seconds()).map_or(wall, |(start, end)| end - start);
+    let seconds = cpu_start.zip(cpu_time::seconds()).map_or(wall, |(start, end)| end - start);
     let of_all = counters.count(Event::MarchNanosecond) as f64 * 1e-9 / wall;
     let in_march = seconds * of_all;
     // A thread does so much in its own seconds, and there are so many of them.
@@ -114,13 +115,6 @@ fn seconds_each(grid: &BrickGrid, look: impl Fn([u32; 3]) -> f32) -> f64 {
     black_box(sum);
     let computed = cpu_start.zip(thread_seconds()).map(|(start, end)| end - start);
     computed.unwrap_or(start.elapsed().as_secs_f64()) / f64::from(POINTS)
-}
-
-/// Seconds that all threads have computed; where the system tells.
-fn process_seconds() -> Option<f64> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    Some((fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?) / 100.0)
 }
 
 fn count(scene: &Scene, threads: usize) -> Counters {
