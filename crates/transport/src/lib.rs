@@ -23,6 +23,7 @@ mod render;
 mod repeat;
 mod roulette;
 mod shadow_catcher;
+mod slots;
 mod spectral;
 mod surface_vertex;
 pub mod transmittance;

@@ -9,6 +9,7 @@
 
 use super::pool::{POOL, Rays};
 use super::volume::{FastGrid, FastVolume, Kind};
+use crate::slots::Slots;
 use glam::Vec3;
 
 /// Rays in a group of vector arithmetic: two AVX2 registers of f32.
@@ -36,32 +37,8 @@ pub(super) fn step(rays: &mut Rays, volumes: &[FastVolume], tentative: &mut List
     }
 }
 
-/// Indices of rays, appended without branches.
-pub(super) struct List {
-    slots: [u16; POOL + 1],
-    length: usize,
-}
-
-impl List {
-    pub fn new() -> List {
-        List { slots: [0; POOL + 1], length: 0 }
-    }
-
-    fn clear(&mut self) {
-        self.length = 0;
-    }
-
-    #[inline(always)]
-    fn push_if(&mut self, slot: usize, condition: bool) {
-        self.slots[self.length.min(POOL)] = slot as u16;
-        self.length += usize::from(condition);
-    }
-
-    #[inline(always)]
-    pub fn slots(&self) -> &[u16] {
-        &self.slots[..self.length.min(POOL)]
-    }
-}
+/// Rays of the pool.
+pub(super) type List = Slots<{ POOL + 1 }>;
 
 #[inline(always)]
 fn group(values: &[f32; POOL], base: usize) -> [f32; WIDTH] {

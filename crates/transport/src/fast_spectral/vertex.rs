@@ -18,6 +18,7 @@ use super::pool::{Group, Lanes, PARTS, POOL};
 use super::scene::{CHANNELS, FastSpectralScene};
 use super::turn::turn;
 use super::way_out::way_out;
+use crate::slots::Slots;
 
 /// Share of its light below which a path plays roulette; survivors get twice this.
 const ROULETTE_WEIGHT: f32 = 0.25;
@@ -75,7 +76,7 @@ pub(super) fn pass_all(scene: &FastSpectralScene, lanes: &mut Lanes, ended: &mut
 
     turn(scene, &mut lanes.direction, &mut lanes.density, &lanes.g, &draws.turn);
 
-    ended.length = 0;
+    ended.clear();
     for l in 0..POOL {
         ended.push_if(l, (lanes.active[l] != 0) & (goes_on[l] == 0));
     }
@@ -236,24 +237,5 @@ impl Draws {
     }
 }
 
-/// Indices of paths, appended without branches.
-pub(super) struct List {
-    slots: [u16; POOL + 1],
-    length: usize,
-}
-
-impl List {
-    pub fn new() -> List {
-        List { slots: [0; POOL + 1], length: 0 }
-    }
-
-    #[inline(always)]
-    fn push_if(&mut self, slot: usize, condition: bool) {
-        self.slots[self.length.min(POOL)] = slot as u16;
-        self.length += usize::from(condition);
-    }
-
-    pub fn slots(&self) -> &[u16] {
-        &self.slots[..self.length.min(POOL)]
-    }
-}
+/// Paths of the pool.
+pub(super) type List = Slots<{ POOL + 1 }>;
