@@ -232,7 +232,8 @@ fn sample_count(tile: &FilmTile) -> u64 {
 }
 
 /// Some tiles, one path after the other, each by `trace`; `false` if cancelled.
-fn trace_tiles(
+#[inline(always)]
+pub(crate) fn trace_tiles(
     scene: &Scene,
     tiles: &mut [FilmTile],
     options: &RenderOptions,

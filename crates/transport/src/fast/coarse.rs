@@ -4,9 +4,7 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use tyndall_scene::{Density, Scene, Volume};
-
-use super::volume::FastGrid;
+use tyndall_scene::{Scene, Volume};
 
 /// Number of places in a table, about: 128 KiB, which leave room in a core's cache. Eight times as many know more, and cost
 /// scenes A and G more time than that saves.
@@ -89,35 +87,4 @@ impl Lattice {
         let last = Vec3::new(nx, ny, nz) * (1.0 - f32::EPSILON);
         ((position - self.min) * self.per_length).clamp(Vec3::ZERO, last)
     }
-}
-
-/// The extinction of a scene that is grids and nothing else.
-pub(super) struct Rough {
-    pub lattice: Lattice,
-    /// Means of μt over the cubes around the places.
-    pub mu_t: Vec<f32>,
-}
-
-impl Rough {
-    /// That of the scene, if it is of this kind and no shape bounds the grids.
-    pub fn new(scene: &Scene, centre: DVec3) -> Option<Rough> {
-        if !scene.boundaries.is_empty() {
-            return None;
-        }
-        let grids: Vec<(FastGrid<'_>, f32)> =
-            scene.volumes.iter().map(|volume| grid(volume, centre)).collect::<Option<_>>()?;
-        let lattice = Lattice::new(scene, centre)?;
-        let mu_t = lattice.table(|position| {
-            lattice.mean_around(position, |position| {
-                grids.iter().map(|(grid, mu_t)| mu_t * grid.nearest_or_nothing(position)).sum()
-            })
-        });
-        Some(Rough { lattice, mu_t })
-    }
-}
-
-/// A volume's grid, if it is one, and its μt at density 1.
-fn grid(volume: &Volume, centre: DVec3) -> Option<(FastGrid<'_>, f32)> {
-    let Density::Grid(grid) = &volume.density else { return None };
-    Some((FastGrid::new(grid, volume.world_to_local, centre), volume.medium.mu_t as f32))
 }

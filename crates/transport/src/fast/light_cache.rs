@@ -6,14 +6,15 @@
 //!
 //!   T ≈ T_c + [u < q] (T̂ − T_c)/q
 //!
-//! has the mean of T̂ whatever the table holds (Fong et al. 2017 call it a control variate, Szirmay-Kalos et al. 2017
-//! apply it to free paths), so most shadow rays need not be traced at all. The table depends on the scene alone, so any
+//! has the mean of T̂ whatever the table holds (Owen 2013, "Monte Carlo theory, methods and examples", section 8.9), so most
+//! shadow rays need not be traced at all. The table depends on the scene alone, so any
 //! part of a render has the same one.
 
 use glam::{DVec3, Vec3};
-use tyndall_scene::{Light, Scene};
+use tyndall_scene::{Density, Light, Scene, Volume};
 
-use super::coarse::{Lattice, Rough};
+use super::coarse::Lattice;
+use super::volume::FastGrid;
 
 /// Lights that get a table; others are traced as if there were none.
 const GREATEST_LIGHTS: usize = 8;
@@ -32,37 +33,34 @@ enum Toward {
 }
 
 impl LightCache {
-    /// The tables of a scene, if any light of it can have one.
+    /// The tables of a scene, if any light of it can have one, its volumes are grids, and no shape bounds them.
     pub fn new(scene: &Scene, centre: DVec3) -> Option<LightCache> {
         let toward: Vec<Option<Toward>> = scene.lights.iter().map(|light| toward(light, centre)).collect();
         if !(1..=GREATEST_LIGHTS).contains(&toward.iter().flatten().count()) {
             return None;
         }
-        let Rough { lattice, mu_t } = Rough::new(scene, centre)?;
+        if !scene.boundaries.is_empty() {
+            return None;
+        }
+        let grids: Option<Vec<(FastGrid<'_>, f32)>> =
+            scene.volumes.iter().map(|volume| grid(volume, centre)).collect();
+        let (grids, lattice) = (grids?, Lattice::new(scene, centre)?);
+        let mu_t = lattice.table(|position| {
+            lattice.mean_around(position, |position| {
+                grids.iter().map(|(grid, mu_t)| mu_t * grid.nearest_or_nothing(position)).sum()
+            })
+        });
         let table = |toward: &Toward| lattice.table(|from| optical_thickness(&lattice, &mu_t, from, toward));
         let tables = toward.iter().map(|toward| toward.as_ref().map(table)).collect();
         Some(LightCache { lattice, tables })
     }
 
-    /// The transmittance to the light of this number from a place relative to the scene's centre, towards `toward`;
-    /// none if the light has no table.
+    /// The transmittance to the light of this number from a place amid the volumes, relative to the scene's centre; none if
+    /// the light has no table.
     #[inline]
-    pub fn transmittance(&self, light: usize, position: Vec3, toward: Vec3) -> Option<f32> {
+    pub fn transmittance(&self, light: usize, position: Vec3) -> Option<f32> {
         let table = self.tables[light].as_ref()?;
-        let Some(position) = self.enter(position, toward) else { return Some(1.0) };
         Some(tyndall_lanes::exp(-self.lattice.lookup(table, position)))
-    }
-
-    /// The place, or where the ray from it enters the tables' box.
-    #[inline]
-    fn enter(&self, position: Vec3, toward: Vec3) -> Option<Vec3> {
-        let Lattice { min, max, .. } = self.lattice;
-        if position.cmpge(min).all() && position.cmple(max).all() {
-            return Some(position);
-        }
-        let (a, b) = ((min - position) / toward, (max - position) / toward);
-        let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-        (enter < leave && leave > 0.0).then(|| position + toward * enter.max(0.0))
     }
 }
 
@@ -92,4 +90,10 @@ fn toward(light: &Light, centre: DVec3) -> Option<Toward> {
         Light::Spot(light) => Some(Toward::Position((light.position() - centre).as_vec3())),
         _ => None,
     }
+}
+
+/// A volume's grid, if it is one, and its μt at density 1.
+fn grid(volume: &Volume, centre: DVec3) -> Option<(FastGrid<'_>, f32)> {
+    let Density::Grid(grid) = &volume.density else { return None };
+    Some((FastGrid::new(grid, volume.world_to_local, centre), volume.medium.mu_t as f32))
 }

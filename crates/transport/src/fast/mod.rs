@@ -16,7 +16,6 @@ mod coarse;
 mod homogeneous;
 mod light_cache;
 mod march;
-mod path_by_path;
 mod pool;
 mod sided;
 mod volume;
@@ -36,7 +35,6 @@ use crate::way::{Span, is_plain};
 use crate::wide;
 use glam::{DVec3, Vec3};
 use march::List;
-use path_by_path::PathByPath;
 pub(crate) use pool::Pixel;
 use pool::{POOL, Path, Rays};
 use sided::{Direct, Sided, draw_light, light_of, lights_seen_at_once};
@@ -72,7 +70,7 @@ pub(crate) fn render_tiles(
     cancel: &AtomicBool,
 ) -> bool {
     match &scene.homogeneous {
-        Some(homogeneous) => wide::run(PathByPath { tracer: homogeneous, tiles, options, cancel }),
+        Some(homogeneous) => wide::run(homogeneous::Paths { homogeneous, tiles, options, cancel }),
         None => wide::run(Engine::new(scene, tiles, options, cancel)),
     }
 }
@@ -584,8 +582,8 @@ fn choose_direct(
     }
     let isotropic = arriving.max_element() * 0.25 * std::f32::consts::FRAC_1_PI;
     let mut traced = strength / (CERTAIN_CONTRIBUTION * isotropic);
-    let cached = scene.light_cache.as_ref().filter(|_| !scene.is_sided);
-    let cached = cached.and_then(|cache| cache.transmittance(light, path.position, toward.as_vec3()));
+    let cached = scene.light_cache.as_ref();
+    let cached = cached.and_then(|cache| cache.transmittance(light, path.position));
     if let Some(cached) = cached {
         traced *= CERTAIN_DOUBT * ((cached * (1.0 - cached)).max(0.0).sqrt() + LEAST_DOUBT);
         path.add_in_scattered(direct * cached);

@@ -74,7 +74,8 @@ impl<'a> FastScene<'a> {
         let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let is_sided = !scene.surfaces.is_empty();
         let homogeneous = Homogeneous::new(scene);
-        let light_cache = LightCache::new(scene, centre);
+        // What surfaces hide, the tables do not know.
+        let light_cache = if is_sided { None } else { LightCache::new(scene, centre) };
         FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights, light_cache, homogeneous }
     }
 

@@ -20,7 +20,8 @@ mod points;
 mod stretch;
 
 use glam::{DVec3, Vec3};
-use tyndall_film::Sample;
+use std::sync::atomic::AtomicBool;
+use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::surface::Meeting;
@@ -28,12 +29,13 @@ use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
 
 use self::lit_way::Lamps;
 use self::stretch::{Fog, Stretch};
-use super::path_by_path::Tracer;
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
+use crate::render::{RenderOptions, trace_tiles};
 use crate::roulette::survival;
 use crate::surface_vertex::{SurfaceTurn, SurfaceVertex};
 use crate::way::is_plain;
+use crate::wide;
 
 /// Throughput below which roulette is played; survivors get twice this.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
@@ -85,11 +87,24 @@ impl<'a> Homogeneous<'a> {
     }
 }
 
-impl Tracer for Homogeneous<'_> {
-    fn scene(&self) -> &Scene {
-        self.scene
-    }
+/// All samples of some tiles.
+pub(super) struct Paths<'a> {
+    pub homogeneous: &'a Homogeneous<'a>,
+    pub tiles: &'a mut [FilmTile],
+    pub options: &'a RenderOptions,
+    pub cancel: &'a AtomicBool,
+}
 
+impl wide::Task for Paths<'_> {
+    #[inline(always)]
+    fn run(self) -> bool {
+        let Paths { homogeneous, tiles, options, cancel } = self;
+        trace_tiles(homogeneous.scene, tiles, options, cancel, |ray, random| homogeneous.trace(ray, random))
+    }
+}
+
+impl Homogeneous<'_> {
+    /// One estimate of the radiance that arrives along `ray`.
     #[inline(always)]
     fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
         let scene = self.scene;
@@ -176,9 +191,7 @@ impl Tracer for Homogeneous<'_> {
         }
         layers.into_sample(|colour| colour.as_dvec3())
     }
-}
 
-impl Homogeneous<'_> {
     /// How the path goes on from a surface.
     #[inline(always)]
     fn leave(&self, vertex: &SurfaceVertex, random: &mut Random) -> Option<SurfaceTurn> {
