@@ -13,6 +13,7 @@
 
 #[cfg(feature = "counters")]
 mod cpu_time;
+#[cfg(feature = "counters")]
 #[path = "roof/share.rs"]
 mod share;
 
