@@ -3,7 +3,11 @@
 //! One file an idea; this one only lists what Python sees. What is written in Python, such as progress bars, xarray and the
 //! examples, stands in `python/tyndall/`.
 
+mod array;
 mod error;
+mod tree;
+mod units;
+mod volume;
 
 use pyo3::prelude::pymodule;
 
@@ -11,6 +15,9 @@ use pyo3::prelude::pymodule;
 #[pymodule]
 mod _tyndall {
     use pyo3::prelude::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_export]
+    use crate::volume::Volume;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
