@@ -14,8 +14,8 @@ use tyndall_optics::PhaseFunction;
 use tyndall_optics::mie::{MieAverage, MieCache};
 use tyndall_scene::description::{PhaseDescription, phase_spec};
 use tyndall_scene::{GREY_WAVELENGTH_NM, MieSpheres, build_phase, grey_phase, mie_spheres};
+use tyndall_session::check_writable;
 
-use crate::output::check_writable;
 use crate::plot::Kind;
 use crate::terminal::{answer, tell};
 use angles::Angles;
