@@ -117,7 +117,9 @@ fn goal(
         return Err(wrong("samples: says how many there are; leave spp, error and time out"));
     }
     if let Some((first, end)) = samples.filter(|(first, end)| first >= end) {
-        return Err(wrong(format!("samples: ({first}, {end}) is no range; give (A, B) with A < B, such as (0, 64)")));
+        return Err(wrong(format!(
+            "samples: ({first}, {end}) is no range; give (A, B) with A < B, such as (0, 64)"
+        )));
     }
     if error.is_some_and(|error| !(error.is_finite() && error > 0.0)) {
         return Err(wrong("error: give a share above 0, such as 0.01"));
