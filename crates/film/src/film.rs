@@ -170,6 +170,11 @@ impl Film {
         self.layers
     }
 
+    /// Memory of the sums, once all layers that are kept are in use.
+    pub fn bytes(&self) -> usize {
+        Sums::bytes(self.sums.pixels.len(), self.layers)
+    }
+
     /// Number of samples that were not finite or too large, and of which nothing was added.
     pub fn rejected(&self) -> u64 {
         self.rejected

@@ -100,6 +100,12 @@ impl Accumulation {
         py.detach(|| self.0.film.median_relative_error())
     }
 
+    /// Memory that it takes, at most.
+    #[getter]
+    fn nbytes(&self) -> usize {
+        self.0.film.bytes()
+    }
+
     /// Hash of the scene.
     #[getter]
     fn scene_hash(&self) -> &str {

@@ -54,9 +54,10 @@ pub(crate) struct Progress {
     image: Option<Py<PyArrayDyn<f32>>>,
 }
 
-/// Renders; `report` is called with a `Progress` every now and then, with the picture in it if `with_image`.
+/// Renders; `report` is called with a `Progress` every now and then, with the picture in it if `with_image`. The
+/// error in it costs a look at every pixel, which `with_error = false` saves; then there is no picture either.
 #[pyfunction]
-#[pyo3(signature = (scene, *, spp, samples, error, time, seed, threads, report, with_image))]
+#[pyo3(signature = (scene, *, spp, samples, error, time, seed, threads, report, with_image, with_error = true))]
 #[expect(clippy::too_many_arguments, reason = "Python calls it with names")]
 pub(crate) fn render(
     scene: &Bound<'_, Scene>,
@@ -68,6 +69,7 @@ pub(crate) fn render(
     threads: Option<usize>,
     report: Option<Py<PyAny>>,
     with_image: bool,
+    with_error: bool,
 ) -> PyResult<Render> {
     let py = scene.py();
     let goal = goal(spp, samples, error, time)?;
@@ -81,6 +83,7 @@ pub(crate) fn render(
     let options = JobOptions { threads, ..JobOptions::default() };
     let mut job = py.detach(|| Job::of_ready(&input, &ready, &options)).map_err(of_session)?;
     let plan = goal.plan(input.description().render.spp);
+    let with_error = with_error && report.is_some();
     let watch = Watch {
         control: Control::default(),
         start: Instant::now(),
@@ -88,6 +91,7 @@ pub(crate) fn render(
         spp: plan.spp(),
         report,
         with_image,
+        with_error,
         latest: Mutex::default(),
     };
     let (outcome, stopped) = py.detach(|| watch.run(&mut job, &plan));
@@ -142,6 +146,7 @@ struct Watch {
     spp: Option<u64>,
     report: Option<Py<PyAny>>,
     with_image: bool,
+    with_error: bool,
     latest: Mutex<Latest>,
 }
 
@@ -188,7 +193,7 @@ impl Watch {
 
     /// On the rendering thread.
     fn after_pass(&self, pictures: &[Sums]) {
-        let Some(Sums { film, .. }) = pictures.first().filter(|_| self.report.is_some()) else { return };
+        let Some(Sums { film, .. }) = pictures.first().filter(|_| self.with_error) else { return };
         let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
         if latest.seen.is_some_and(|seen| seen.elapsed() < REPORT) {
             return;
@@ -227,6 +232,18 @@ impl Watch {
 
 #[pymethods]
 impl Render {
+    /// The picture that the sums of an `.acc` file, or of merged renders, come to.
+    #[staticmethod]
+    #[pyo3(signature = (accumulation, *, exposure = 0.0, notes = Vec::new(), complete = true))]
+    fn from_accumulation(
+        accumulation: &Accumulation,
+        exposure: f32,
+        notes: Vec<String>,
+        complete: bool,
+    ) -> Self {
+        Self { pictures: vec![accumulation.0.clone()], exposure, notes, is_complete: complete }
+    }
+
     /// Mean radiance, linear: of shape (H, W, 3), or (H, W, N) of a picture of N bands.
     #[getter]
     fn image<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {

@@ -153,10 +153,12 @@ impl Volume {
         &self.grid().name
     }
 
-    /// Hash of the content.
+    /// Hash of the content, its place included.
     #[getter]
     fn hash(&self, py: Python<'_>) -> String {
-        py.detach(|| self.grid.hash()).to_string()
+        let hash = py.detach(|| self.grid.hash()).to_string();
+        // The same numbers are elsewhere if they are metres.
+        if self.is_in_metres { format!("{hash}-metres") } else { hash }
     }
 
     /// All of it, for `from_bytes`.

@@ -132,6 +132,9 @@ class Accumulation:
     def median_error(self) -> float | None:
         """Median over the pixels of standard error over mean of luminance."""
     @property
+    def nbytes(self) -> int:
+        """Memory that it takes, at most."""
+    @property
     def scene_hash(self) -> str:
         """Hash of the scene."""
     @property
@@ -146,6 +149,11 @@ class Accumulation:
 class Render:
     """A picture with its error."""
 
+    @staticmethod
+    def from_accumulation(
+        accumulation: Accumulation, *, exposure: float = 0.0, notes: Sequence[str] = (), complete: bool = True
+    ) -> Render:
+        """The picture that the sums of an `.acc` file, or of merged renders, come to."""
     @property
     def image(self) -> _Image:
         """Mean radiance, linear: of shape (H, W, 3), or (H, W, N) of a picture of N bands."""
@@ -219,8 +227,9 @@ def render(
     threads: int | None,
     report: Callable[[Progress], object] | None,
     with_image: bool,
+    with_error: bool = True,
 ) -> Render:
-    """What `tyndall.render` calls."""
+    """What `tyndall.render` calls; `with_error=False` saves the look at every pixel that error and picture in the reports cost."""
 
 def schema() -> str:
     """The JSON schema of scenes, as text."""
