@@ -25,10 +25,10 @@ def contents(
 
 def scene(text: str, files: Mapping[str, bytes], volumes: Mapping[str, Volume]) -> Scene:
     """The scene of `contents`."""
-    folder = pathlib.Path(_folder().name)
+    place_of_files = folder()
     for name, content in files.items():
-        place(folder, name, content)
-    return Scene.from_toml(text, folder=folder, volumes=dict(volumes))
+        place(place_of_files, name, content)
+    return Scene.from_toml(text, folder=place_of_files, volumes=dict(volumes))
 
 
 def place(folder: pathlib.Path, name: str, content: bytes) -> pathlib.Path:
@@ -42,7 +42,11 @@ def place(folder: pathlib.Path, name: str, content: bytes) -> pathlib.Path:
     return path
 
 
+def folder() -> pathlib.Path:
+    """Where files of unpickled scenes are, as long as this process lives."""
+    return pathlib.Path(_folder().name)
+
+
 @cache
 def _folder() -> tempfile.TemporaryDirectory[str]:
-    """Where files of unpickled scenes are, as long as this process lives."""
     return tempfile.TemporaryDirectory(prefix="tyndall-")
