@@ -17,7 +17,7 @@
 //! transposed, all first bytes of its records, then all second ones: the high bytes of neighbouring sums are equal, most
 //! of them zero, and compress well.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -28,10 +28,13 @@ use crate::film::{Film, MergeError, OpenPass, pixel_count, tile_count};
 use crate::fixed_point::MAX_SAMPLES;
 use crate::metadata::ImageMetadata;
 use crate::plane_codec::{decode_plane, encode_plane};
+use crate::provenance::Provenance;
 use crate::ranges::{RangeError, SampleRanges};
 use crate::sample::Layers;
 use crate::sums::Sums;
 
+const DAMAGED: &str = "is damaged or cut short; copy it again or render its samples anew";
+const NOT_ONE: &str = "is no .acc file of tyndall";
 const MAGIC: &[u8; 8] = b"TYNDALL\x1a";
 const VERSION: u32 = 2;
 /// The oldest version that is read.
@@ -177,9 +180,8 @@ impl Accumulation {
     }
 
     fn decode(bytes: &[u8]) -> Result<Self, String> {
-        const DAMAGED: &str = "is damaged or cut short; copy it again or render its samples anew";
         if !bytes.starts_with(MAGIC) {
-            return Err("is no .acc file of tyndall".into());
+            return Err(NOT_ONE.into());
         }
         let (content, checksum) = bytes.split_last_chunk::<4>().ok_or(DAMAGED)?;
         let mut crc = flate2::Crc::new();
@@ -188,13 +190,7 @@ impl Accumulation {
             return Err(DAMAGED.into());
         }
         let (version, rest) = content[MAGIC.len()..].split_first_chunk().ok_or(DAMAGED)?;
-        let version = u32::from_le_bytes(*version);
-        if !(OLDEST_VERSION..=VERSION).contains(&version) {
-            return Err(format!(
-                "has version {version} of the .acc format, and this program reads versions {OLDEST_VERSION} to \
-                 {VERSION}; use the program that wrote it"
-            ));
-        }
+        check_version(u32::from_le_bytes(*version))?;
         let (length, rest) = rest.split_first_chunk().ok_or(DAMAGED)?;
         let (json, mut blocks) =
             rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(DAMAGED)?;
@@ -204,6 +200,64 @@ impl Accumulation {
             return Err(format!("has {} bytes too many after its sums", blocks.len()));
         }
         Ok(Self { film, metadata: header.metadata })
+    }
+}
+
+fn check_version(version: u32) -> Result<(), String> {
+    if (OLDEST_VERSION..=VERSION).contains(&version) {
+        return Ok(());
+    }
+    Err(format!(
+        "has version {version} of the .acc format, and this program reads versions {OLDEST_VERSION} to {VERSION}; use \
+         the program that wrote it"
+    ))
+}
+
+/// What an `.acc` file says of its making, once it is known to be undamaged. Takes no memory for the sums.
+///
+/// # Errors
+/// If the file cannot be read, is damaged or is of another format.
+pub(crate) fn read_provenance(path: &Path) -> Result<Provenance, FileError> {
+    let refuse = |what: String| FileError::unusable(path, what);
+    let io = |error| FileError::io(path, error);
+    let file = std::fs::File::open(path).map_err(io)?;
+    let length = file.metadata().map_err(io)?.len();
+    let mut file = ChecksumReader { inner: io::BufReader::new(file), crc: flate2::Crc::new() };
+    let mut start = [0; 16];
+    let begins = file.read_exact(&mut start).is_ok();
+    if !begins || !start.starts_with(MAGIC) {
+        return Err(refuse(NOT_ONE.into()));
+    }
+    let word = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|i| start[at + i]));
+    check_version(word(8)).map_err(refuse)?;
+    let mut json = Vec::new();
+    file.by_ref().take(u64::from(word(12))).read_to_end(&mut json).map_err(io)?;
+    let rest = length.checked_sub(20 + json.len() as u64).ok_or_else(|| refuse(DAMAGED.into()))?;
+    io::copy(&mut file.by_ref().take(rest), &mut io::sink()).map_err(io)?;
+    let sum = file.crc.sum();
+    let mut checksum = [0; 4];
+    file.inner.read_exact(&mut checksum).map_err(|_| refuse(DAMAGED.into()))?;
+    if sum != u32::from_le_bytes(checksum) {
+        return Err(refuse(DAMAGED.into()));
+    }
+    let header: Header =
+        serde_json::from_slice(&json).map_err(|error| refuse(format!("has a bad header: {error}")))?;
+    let ImageMetadata { scene_hash, version, options, seed, .. } = header.metadata;
+    let open = header.open.map(|pass| pass.start);
+    Ok(Provenance { scene_hash, version, options, seed, samples: header.samples, open })
+}
+
+/// Reads bytes and keeps their checksum.
+struct ChecksumReader<R> {
+    inner: R,
+    crc: flate2::Crc,
+}
+
+impl<R: Read> Read for ChecksumReader<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let length = self.inner.read(bytes)?;
+        self.crc.update(&bytes[..length]);
+        Ok(length)
     }
 }
 
