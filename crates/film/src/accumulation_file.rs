@@ -24,12 +24,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::atomic_write::write_atomically;
 use crate::error::FileError;
-use crate::film::{Film, MergeError, OpenPass, pixel_count, tile_count};
+use crate::film::{Film, OpenPass, pixel_count, tile_count};
 use crate::fixed_point::MAX_SAMPLES;
 use crate::metadata::ImageMetadata;
 use crate::plane_codec::{decode_plane, encode_plane};
 use crate::provenance::Provenance;
-use crate::ranges::{RangeError, SampleRanges};
+use crate::ranges::SampleRanges;
 use crate::sample::Layers;
 use crate::sums::Sums;
 
@@ -95,40 +95,19 @@ impl Accumulation {
 
     /// Adds the samples of `other`. The paths only serve to name both in an error; nothing changes on error.
     pub fn merge(&mut self, path: &Path, other: &Self, other_path: &Path) -> Result<(), FileError> {
-        let refuse = |what: String| FileError::unusable(other_path, what);
-        let (mine, theirs) = (&self.metadata, &other.metadata);
-        for (name, a, b) in [
-            ("scene", &mine.scene_hash, &theirs.scene_hash),
-            ("version of tyndall", &mine.version, &theirs.version),
-            ("options", &mine.options, &theirs.options),
-            ("seed", &mine.seed.to_string(), &theirs.seed.to_string()),
-        ] {
-            if a != b {
-                return Err(refuse(format!(
-                    "cannot be merged with {}: another {name} (`{b}`, not `{a}`); only renders of one scene with \
-                     the same seed and options add up",
-                    path.display()
-                )));
-            }
-        }
-        self.film.merge(&other.film).map_err(|error| match error {
-            MergeError::Ranges(RangeError::Overlap(common)) => refuse(format!(
-                "cannot be merged with {}: both hold samples {}..{}; leave one of them out",
-                path.display(),
-                common.start,
-                common.end
-            )),
-            MergeError::Incomplete(start) => {
-                let open = if self.film.open_start().is_some() { path } else { other_path };
-                FileError::unusable(
-                    open,
-                    format!("was interrupted in the pass that begins at sample {start}; resume it to its end first"),
-                )
-            }
-            error => refuse(format!("cannot be merged with {}: {error}", path.display())),
+        self.provenance().join(path, &other.provenance(), other_path)?;
+        self.film.merge(&other.film).map_err(|error| {
+            FileError::unusable(other_path, format!("cannot be merged with {}: {error}", path.display()))
         })?;
         self.metadata.seconds += other.metadata.seconds;
         Ok(())
+    }
+
+    /// How the samples were made, and which they are.
+    pub fn provenance(&self) -> Provenance {
+        let ImageMetadata { scene_hash, version, options, seed, .. } = self.metadata.clone();
+        let samples = self.film.complete().clone();
+        Provenance { scene_hash, version, options, seed, samples, open: self.film.open_start() }
     }
 
     fn encode(&self, file: &mut impl Write) -> io::Result<()> {

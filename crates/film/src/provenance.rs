@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::accumulation_file::read_provenance;
 use crate::comparison::Picture;
 use crate::error::FileError;
-use crate::ranges::SampleRanges;
+use crate::ranges::{RangeError, SampleRanges};
 
 /// How the samples of a written picture were made, and which they are.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -29,6 +29,45 @@ pub struct Provenance {
 }
 
 impl Provenance {
+    /// Adds the samples of `other`, if it is of the same scene and made in the same way. The paths only serve to name both
+    /// in an error; nothing changes on error.
+    ///
+    /// # Errors
+    /// If scene, version, options or seed differ, a pass was interrupted, or both hold the same samples.
+    pub fn join(&mut self, path: &Path, other: &Self, other_path: &Path) -> Result<(), FileError> {
+        let refuse = |what: String| {
+            FileError::unusable(other_path, format!("cannot be merged with {}: {what}", path.display()))
+        };
+        for (name, a, b) in [
+            ("scene", &self.scene_hash, &other.scene_hash),
+            ("version of tyndall", &self.version, &other.version),
+            ("options", &self.options, &other.options),
+            ("seed", &self.seed.to_string(), &other.seed.to_string()),
+        ] {
+            if a != b {
+                return Err(refuse(format!(
+                    "another {name} (`{b}`, not `{a}`); only renders of one scene with the same seed and options add up"
+                )));
+            }
+        }
+        for (path, open) in [(path, self.open), (other_path, other.open)] {
+            if let Some(start) = open {
+                return Err(FileError::unusable(
+                    path,
+                    format!(
+                        "was interrupted in the pass that begins at sample {start}; resume it to its end first"
+                    ),
+                ));
+            }
+        }
+        self.samples.insert_all(&other.samples).map_err(|error| match error {
+            RangeError::Overlap(common) => {
+                refuse(format!("both hold samples {}..{}; leave one of them out", common.start, common.end))
+            }
+            error => refuse(error.to_string()),
+        })
+    }
+
     /// That of an `.acc` file, which is read as a whole to know that it is undamaged, but not kept in memory.
     ///
     /// # Errors

@@ -16,11 +16,15 @@ pub(crate) struct AutomaticInput {
     pub notes: Vec<String>,
 }
 
-/// Makes up a scene for the volume file at `path`.
+/// Makes up a scene for the volume file at `path`, which the scene calls `shown`.
 ///
 /// # Errors
 /// If it cannot be read, or has nothing to be seen.
-pub(crate) fn make_up(path: &Path, raw: Option<RawVolume>) -> Result<AutomaticInput, SessionError> {
+pub(crate) fn make_up(
+    path: &Path,
+    shown: &Path,
+    raw: Option<RawVolume>,
+) -> Result<AutomaticInput, SessionError> {
     let file = read_volume(path, &[], raw)?;
     let mut notes: Vec<String> =
         file.skipped.iter().map(|(name, why)| format!("{}: grid `{name}`: {why}", path.display())).collect();
@@ -60,7 +64,7 @@ pub(crate) fn make_up(path: &Path, raw: Option<RawVolume>) -> Result<AutomaticIn
         None => {}
     }
     notes.push("light, camera and density are chosen from the data; --print-scene shows them".into());
-    let mut automatic = SceneDescription::for_volume(&path.display().to_string(), &summary);
+    let mut automatic = SceneDescription::for_volume(&shown.display().to_string(), &summary);
     if let Some(raw) = raw {
         automatic.description.volumes.iter_mut().try_for_each(|volume| raw.describe(volume))?;
     }
