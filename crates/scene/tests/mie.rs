@@ -6,7 +6,7 @@ use tyndall_optics::PhaseFunction;
 use tyndall_optics::mie::MieCache;
 use tyndall_scene::description::{PhaseDescription, phase_spec};
 use tyndall_scene::{
-    Medium, SceneDescription, SceneDocument, SceneError, build_with, mie_spheres, scene_hash,
+    Medium, SceneDescription, SceneDocument, SceneError, SceneFiles, build_with, mie_spheres, scene_hash,
 };
 
 fn parse(line: &str) -> PhaseDescription {
@@ -119,7 +119,7 @@ fn scene(medium: &str, mode: &str) -> Result<SceneDescription, SceneError> {
 
 fn medium(text: &str, mode: &str) -> Medium {
     let description = scene(text, mode).unwrap_or_else(|error| panic!("{error}"));
-    let built = build_with(&description, Path::new(""), &MieCache::none()).unwrap();
+    let built = build_with(&description, &SceneFiles::default(), &MieCache::none()).unwrap();
     built.scene.volumes[0].medium.clone()
 }
 

@@ -1,16 +1,24 @@
 //! Whatever can be rendered, as a description: the built-in scene, a scene file, one of another renderer, a bare volume with
 //! a scene made up for it, or a scene that a program hands over.
 
+mod frame;
+
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tyndall_scene::{BuiltScene, SceneDescription, SceneDocument, SceneHash, build, scene_hash};
+use tyndall_optics::mie::MieCache;
+use tyndall_scene::{
+    BuiltScene, MemoryGrid, SceneDescription, SceneDocument, SceneFiles, SceneHash, build_with,
+    scene_hash_with,
+};
 
 use crate::bare_volume::AutomaticInput;
 use crate::foreign::{self, ImportOptions, WrittenFiles};
-use crate::frames::{Frames, at_frame, file_at_frame, holds_frame};
+use crate::frames::{at_frame, holds_frame};
 use crate::volume_file::{RawVolume, check_input};
 use crate::{SessionError, bare_volume};
+use frame::FrameSource;
 
 /// A cumulus under sun and sky.
 const DEFAULT_SCENE: &str = include_str!("../../../scenes/cloud.toml");
@@ -45,23 +53,12 @@ pub struct Input {
     description: SceneDescription,
     /// The scene file with its comments, as long as it says the same as the description.
     text: Option<String>,
-    folder: PathBuf,
+    files: SceneFiles,
     notes: Vec<String>,
     written: Option<Arc<WrittenFiles>>,
     name: String,
     stem: String,
     frames: FrameSource,
-}
-
-/// Where the scene of another frame comes from.
-#[derive(Debug, Clone)]
-enum FrameSource {
-    /// The same scene, but for the names of its files.
-    Same,
-    /// The same document, with other overrides.
-    Document(Box<SceneDocument>, InputOptions),
-    /// A scene file of its own.
-    File(PathBuf, InputOptions),
 }
 
 impl Input {
@@ -150,7 +147,7 @@ impl Input {
         Self {
             description,
             text: None,
-            folder: folder.into(),
+            files: SceneFiles { folder: folder.into(), grids: BTreeMap::new() },
             notes: Vec::new(),
             written: None,
             name: name.to_owned(),
@@ -198,59 +195,16 @@ impl Input {
         Ok(input)
     }
 
-    /// The scene in a frame of the animation whose first one it was [opened](InputOptions::frame) at: names of its files,
-    /// and the overrides, with the frame's number. What was chosen for a bare volume stays as it is.
+    /// The scene of a bare grid in memory, made up from its data; `name` stands for its file.
     ///
     /// # Errors
-    /// If a scene file of the frame cannot be read, or the overrides do not fit.
-    pub fn at_frame(&self, frame: u32) -> Result<Self, SessionError> {
-        let mut input = match &self.frames {
-            FrameSource::Same => self.clone(),
-            FrameSource::Document(document, options) => {
-                let options = InputOptions { frame: Some(frame), ..options.clone() };
-                let changed = Self::from_document((**document).clone(), &options, None, self.folder.clone())?;
-                Self { description: changed.description, text: None, ..self.clone() }
-            }
-            FrameSource::File(path, options) => {
-                Self::open(path, &InputOptions { frame: Some(frame), ..options.clone() })?
-            }
-        };
-        for file in input.description_mut().files_mut() {
-            *file = at_frame(file, frame);
-        }
-        Ok(input)
-    }
-
-    /// Refuses frames of which a file is not there: it is better to hear now than after a night of rendering.
-    ///
-    /// # Errors
-    /// If there is one; or if nothing depends on the frame, so that all would be the same picture.
-    pub fn check_frames(&self, frames: &Frames) -> Result<(), SessionError> {
-        let mut description = self.description.clone();
-        let of_scene = description.files_mut().into_iter().filter(|file| holds_frame(file));
-        let mut patterns: Vec<PathBuf> = of_scene.map(|file| self.folder.join(file)).collect();
-        if let FrameSource::File(path, _) = &self.frames {
-            // Which files these scenes name is not known before they are read.
-            patterns = vec![path.clone()];
-        }
-        if patterns.is_empty() && matches!(self.frames, FrameSource::Same) {
-            return Err(SessionError::refuse(
-                &self.name,
-                "all frames would be the same; write #### for the number of the frame in the name of a file of it",
-            ));
-        }
-        for frame in frames.iter().filter(|_| !patterns.is_empty()) {
-            let files = patterns.iter().map(|pattern| file_at_frame(pattern, frame));
-            if let Some(missing) = files.into_iter().find(|file| !file.exists()) {
-                return Err(SessionError::refuse_file(
-                    &missing,
-                    format!(
-                        "there is no such file, and frame {frame} needs it; mend --frames or the file's name"
-                    ),
-                ));
-            }
-        }
-        Ok(())
+    /// If the grid has nothing to be seen.
+    pub fn from_grid(name: &str, grid: MemoryGrid) -> Result<Self, SessionError> {
+        let AutomaticInput { text, notes } = bare_volume::make_up_of_grid(name, &grid)?;
+        let mut input = Self::from_text("the scene made up for the volume", &text, "", &[])?;
+        input.notes = notes;
+        input.name = name.to_owned();
+        Ok(input.with_grids(BTreeMap::from([(name.to_owned(), grid)])))
     }
 
     /// The scene, with all overrides applied.
@@ -271,7 +225,13 @@ impl Input {
 
     /// What its file names are relative to.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        &self.files.folder
+    }
+
+    /// The same, with grids in memory that stand for files of these names.
+    pub fn with_grids(mut self, grids: BTreeMap<String, MemoryGrid>) -> Self {
+        self.files.grids = grids;
+        self
     }
 
     /// What was guessed, and what is not as in the renderer that the scene is for.
@@ -299,7 +259,15 @@ impl Input {
     /// # Errors
     /// If a file that it names cannot be read or used.
     pub fn build(&self) -> Result<BuiltScene, SessionError> {
-        Ok(build(&self.description, &self.folder)?)
+        Ok(build_with(&self.description, &self.files, &MieCache::from_environment())?)
+    }
+
+    /// The scene ready to trace with its hash, for as many [jobs](crate::Job) as are wanted.
+    ///
+    /// # Errors
+    /// If a file that it names cannot be read or used.
+    pub fn ready(&self) -> Result<ReadyScene, SessionError> {
+        Ok(ReadyScene { built: self.build()?, hash: self.scene_hash()? })
     }
 
     /// The hash of all that decides the expected picture, files included.
@@ -307,12 +275,21 @@ impl Input {
     /// # Errors
     /// If a file that it names cannot be read.
     pub fn scene_hash(&self) -> Result<SceneHash, SessionError> {
-        Ok(scene_hash(&self.description, &self.folder)?)
+        Ok(scene_hash_with(&self.description, &self.files)?)
     }
 }
 
 fn is_scene(name: &str) -> bool {
     name.rsplit('.').next().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
+/// A scene ready to trace, and which it is.
+#[derive(Debug, Clone)]
+pub struct ReadyScene {
+    /// The scene.
+    pub built: BuiltScene,
+    /// Its hash.
+    pub hash: SceneHash,
 }
 
 fn parent_folder(path: &Path) -> PathBuf {
