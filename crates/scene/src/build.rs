@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use std::cell::Cell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tyndall_optics::mie::MieCache;
 use tyndall_volumes::{
@@ -19,6 +19,7 @@ use crate::description::{
 use crate::light::{LightTree, build_lights};
 use crate::mie::MieTables;
 use crate::ready::light_probabilities;
+use crate::scene_files::{MemoryGrid, SceneFiles};
 use crate::surface::{Boundaries, Presence, Surfaces, VolumeNumber, build_surfaces, numbers_of};
 use crate::{Camera, Density, Scene, SceneDescription, SceneError, Volume, observers, procedural};
 
@@ -37,15 +38,16 @@ pub struct BuiltScene {
 ///
 /// What Lorenz-Mie theory computes is kept in the cache that the environment names.
 pub fn build(description: &SceneDescription, folder: &Path) -> Result<BuiltScene, SceneError> {
-    build_with(description, folder, &MieCache::from_environment())
+    build_with(description, &SceneFiles::in_folder(folder), &MieCache::from_environment())
 }
 
-/// The same, with a cache for Lorenz-Mie theory.
+/// The same of a scene whose files may be grids in memory, with a cache for Lorenz-Mie theory.
 pub fn build_with(
     description: &SceneDescription,
-    folder: &Path,
+    files: &SceneFiles,
     cache: &MieCache,
 ) -> Result<BuiltScene, SceneError> {
+    let folder = files.folder.as_path();
     let tables = MieTables::new(description.render.mode, cache);
     let mut notes = Vec::new();
     let mut grids = Vec::new();
@@ -61,7 +63,7 @@ pub fn build_with(
     }
     for (number, volume) in description.volumes.iter().enumerate() {
         let name = volume.name.clone().unwrap_or_else(|| format!("volume.{number}"));
-        volumes.push(build_volume(volume, name, &description.unit, folder, &tables, &mut grids, &mut notes)?);
+        volumes.push(build_volume(volume, name, &description.unit, files, &tables, &mut grids, &mut notes)?);
     }
     // Nothing collides where there is no extinction.
     let is_there =
@@ -126,21 +128,33 @@ fn build_volume(
     description: &VolumeDescription,
     name: String,
     unit: &str,
-    folder: &Path,
+    files: &SceneFiles,
     tables: &MieTables,
     grids: &mut Vec<(String, String)>,
     notes: &mut Vec<String>,
 ) -> Result<Volume, SceneError> {
+    let folder = files.folder.as_path();
     let source = description.source().map_err(|(_, message)| SceneError::file(Path::new(&name), message))?;
     let to_scene =
         description.transform.as_ref().map_or(DAffine3::IDENTITY, |transform| transform.to_affine());
     let (density, local_to_volume) = match source {
         VolumeSource::File(file) => {
-            let path = folder.join(file);
-            let grid = read_grid(description, &path, notes)?;
+            let (path, grid, place) = match files.grids.get(file) {
+                Some(memory) => (
+                    PathBuf::from(file),
+                    named_grid(memory, description.grid.as_deref(), file)?,
+                    memory.place(),
+                ),
+                None => {
+                    let path = folder.join(file);
+                    let grid = Arc::new(read_grid(description, &path, notes)?);
+                    (path, grid, DAffine3::IDENTITY)
+                }
+            };
             grids.push((name.clone(), grid.name.clone()));
             let bricks = build_bricks(description, &grid, &path, notes)?;
-            grid_density(bricks, &grid)
+            let (density, local_to_grid) = grid_density(bricks, &grid);
+            (density, place * local_to_grid)
         }
         VolumeSource::Box(cuboid) => {
             let [min, max] = [cuboid.min, cuboid.max].map(DVec3::from_array);
@@ -175,7 +189,7 @@ fn build_volume(
     }
     let emission_scale = description.emission_scale.unwrap_or(1.0);
     let medium = build_medium(&description.medium, unit, folder, emission_scale, tables, &name)?;
-    let fields = build_fields(description, folder, to_scene, &name, notes)?;
+    let fields = build_fields(description, files, to_scene, &name, notes)?;
     Ok(Volume { name, world_to_local, density, medium, fields })
 }
 
@@ -222,6 +236,21 @@ fn read_grid(
         ));
     }
     Ok(grid)
+}
+
+/// The grid in memory, if it is the one that was asked for.
+pub(crate) fn named_grid(
+    memory: &MemoryGrid,
+    wanted: Option<&str>,
+    file: &str,
+) -> Result<Arc<Grid>, SceneError> {
+    let grid = memory.grid();
+    match wanted.filter(|wanted| *wanted != grid.name) {
+        None => Ok(Arc::clone(grid)),
+        Some(wanted) => {
+            Err(SceneError::file(Path::new(file), format!("no grid named `{wanted}`; it is `{}`", grid.name)))
+        }
+    }
 }
 
 /// Reads a volume file that the scene names.

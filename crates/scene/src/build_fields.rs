@@ -7,19 +7,20 @@ use glam::DAffine3;
 use tyndall_optics::planck::BlackbodyColours;
 use tyndall_volumes::{BrickGrid, Filter, Grid, GridSelection, ReadRequest, Storage};
 
-use crate::build::read_volume_file;
+use crate::build::{named_grid, read_volume_file};
 use crate::description::{GridFilter, VolumeDescription};
+use crate::scene_files::SceneFiles;
 use crate::{Field, Fields, SceneError, TemperatureField};
 
 /// The fields of a volume; `to_scene` is its transform. What was chosen or is odd goes into `notes`.
 pub(crate) fn build_fields(
     description: &VolumeDescription,
-    folder: &Path,
+    files: &SceneFiles,
     to_scene: DAffine3,
     name: &str,
     notes: &mut Vec<String>,
 ) -> Result<Option<Arc<Fields>>, SceneError> {
-    let mut source = Source { description, folder, to_scene, name, notes };
+    let mut source = Source { description, files, to_scene, name, notes };
     let mut fields = Fields::default();
     if let Some(emission) = &description.emission_grid {
         let grid = source.read(&emission.file, &emission.grid, &["flame", "heat"], "emission_grid")?;
@@ -49,10 +50,16 @@ pub(crate) fn build_fields(
     Ok((!is_empty).then(|| Arc::new(fields)))
 }
 
+/// A grid, and the way from its own world space to the volume's.
+struct Placed {
+    grid: Arc<Grid>,
+    place: DAffine3,
+}
+
 /// Where the grids come from, and where they go.
 struct Source<'a> {
     description: &'a VolumeDescription,
-    folder: &'a Path,
+    files: &'a SceneFiles,
     to_scene: DAffine3,
     name: &'a str,
     notes: &'a mut Vec<String>,
@@ -66,11 +73,15 @@ impl Source<'_> {
         grid: &Option<String>,
         names: &[&str],
         key: &str,
-    ) -> Result<Grid, SceneError> {
+    ) -> Result<Placed, SceneError> {
         let Some(file) = file.as_ref().or(self.description.file.as_ref()) else {
             return Err(SceneError::file(Path::new(self.name), format!("`{key}` needs a `file`")));
         };
-        let path = self.folder.join(file);
+        if let Some(memory) = self.files.grids.get(file) {
+            let grid = named_grid(memory, grid.as_deref(), file)?;
+            return Ok(Placed { grid, place: memory.place() });
+        }
+        let path = self.files.folder.join(file);
         let grids = match grid {
             Some(name) => GridSelection::Names(vec![name.clone()]),
             None => GridSelection::All,
@@ -98,16 +109,17 @@ impl Source<'_> {
             let text = format!("{}: `{}` is taken for `{key}`", path.display(), chosen_grid.name);
             self.notes.push(text);
         }
-        Ok(chosen_grid)
+        Ok(Placed { grid: Arc::new(chosen_grid), place: DAffine3::IDENTITY })
     }
 
     /// A scalar grid in its place.
     fn field(
         &mut self,
-        grid: &Grid,
+        placed: &Placed,
         storage: Storage,
         map: impl Fn(f32) -> f32,
     ) -> Result<Field, SceneError> {
+        let Placed { grid, place } = placed;
         let refuse = |message: String| SceneError::file(Path::new(self.name), message);
         let filter = match self.description.filter.unwrap_or_default() {
             GridFilter::Trilinear => Filter::Trilinear,
@@ -123,7 +135,7 @@ impl Source<'_> {
         }
         let bricks = bricks.with_filter(filter);
         let to_index = DAffine3::from_translation(glam::DVec3::splat(-filter.offset()));
-        let world_to_local = (self.to_scene * grid.index_to_world * to_index).inverse();
+        let world_to_local = (self.to_scene * *place * grid.index_to_world * to_index).inverse();
         if !world_to_local.is_finite() {
             return Err(refuse(format!(
                 "the transform of `{}` is singular: it flattens the grid",
@@ -134,11 +146,11 @@ impl Source<'_> {
     }
 
     /// The channels of a grid of colours, or a scalar grid three times; values beyond 0…1 are the nearer end.
-    fn colours(&mut self, grid: &Grid) -> Result<[Field; 3], SceneError> {
+    fn colours(&mut self, placed: &Placed) -> Result<[Field; 3], SceneError> {
         let clamp = |value: f32| value.clamp(0.0, 1.0);
         let mut channel = |axis: usize| {
-            let component = grid.component(axis);
-            self.field(component.as_ref().unwrap_or(grid), Storage::F16, clamp)
+            let grid = placed.grid.component(axis).map_or_else(|| Arc::clone(&placed.grid), Arc::new);
+            self.field(&Placed { grid, place: placed.place }, Storage::F16, clamp)
         };
         Ok([channel(0)?, channel(1)?, channel(2)?])
     }

@@ -10,10 +10,19 @@ use sha2::{Digest, Sha256};
 use crate::canonical_names::without_names;
 use crate::description::{RenderDescription, SceneDescription};
 use crate::error::SceneError;
+use crate::scene_files::SceneFiles;
 
 /// The first 128 bits of a SHA-256 over everything that determines the expected picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SceneHash(pub [u8; 16]);
+
+impl SceneHash {
+    /// The first half of what a hasher has come to.
+    pub(crate) fn of(hasher: Sha256) -> Self {
+        let digest: [u8; 32] = hasher.finalize().into();
+        Self(std::array::from_fn(|index| digest[index]))
+    }
+}
 
 impl fmt::Display for SceneHash {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -28,6 +37,11 @@ impl fmt::Display for SceneHash {
 /// picture: where the files are, names, the unit (unless media are given in physical units), comments, samples per pixel,
 /// seed, integrator, exposure, layers and meters.
 pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<SceneHash, SceneError> {
+    scene_hash_with(description, &SceneFiles::in_folder(folder))
+}
+
+/// The same of a scene whose files may be grids in memory, which count by their content as well.
+pub fn scene_hash_with(description: &SceneDescription, files: &SceneFiles) -> Result<SceneHash, SceneError> {
     let mut canonical = description.clone();
     // Only what is given in physical units depends on it.
     if !canonical.media().any(|medium| medium.preset.is_some() || medium.particles.is_some()) {
@@ -41,7 +55,11 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
     canonical.render = RenderDescription { max_depth, mode, ..RenderDescription::default() };
     let mut known: HashMap<PathBuf, String> = HashMap::new();
     for file in canonical.files_mut() {
-        let path = folder.join(&file);
+        if let Some(grid) = files.grids.get(file.as_str()) {
+            *file = grid.hash().to_string();
+            continue;
+        }
+        let path = files.folder.join(&file);
         *file = match known.get(&path) {
             Some(hash) => hash.clone(),
             None => {
@@ -51,7 +69,7 @@ pub fn scene_hash(description: &SceneDescription, folder: &Path) -> Result<Scene
             }
         };
     }
-    Ok(SceneHash(first_half(Sha256::digest(canonical.to_toml().as_bytes()).into())))
+    Ok(SceneHash::of(Sha256::new().chain_update(canonical.to_toml())))
 }
 
 fn content_hash(path: &Path) -> Result<String, SceneError> {
@@ -61,14 +79,10 @@ fn content_hash(path: &Path) -> Result<String, SceneError> {
     let mut block = vec![0; 1 << 20];
     loop {
         match file.read(&mut block).map_err(refuse)? {
-            0 => return Ok(SceneHash(first_half(hasher.finalize().into())).to_string()),
+            0 => return Ok(SceneHash::of(hasher).to_string()),
             length => hasher.update(&block[..length]),
         }
     }
-}
-
-fn first_half(digest: [u8; 32]) -> [u8; 16] {
-    std::array::from_fn(|index| digest[index])
 }
 
 #[cfg(test)]

@@ -119,7 +119,7 @@ fn scene(medium: &str, mode: &str) -> Result<SceneDescription, SceneError> {
 
 fn medium(text: &str, mode: &str) -> Medium {
     let description = scene(text, mode).unwrap_or_else(|error| panic!("{error}"));
-    let built = build_with(&description, Path::new(""), &MieCache::none()).unwrap();
+    let built = build_with(&description, &SceneFiles::default(), &MieCache::none()).unwrap();
     built.scene.volumes[0].medium.clone()
 }
 

@@ -11,7 +11,7 @@ use crate::fault::Fault;
 use crate::{GridValues, LEAF_VOXELS, Leaf, Tile, Tree};
 
 /// Planes in a slab, and the edge of a leaf.
-const EDGE: usize = 8;
+pub(crate) const EDGE: usize = 8;
 /// A leaf costs 512 values however few of its voxels exist: an array that would grow by more than this factor …
 const MOST_GROWTH: u64 = 16;
 /// … to more than this many bytes is no volume.
@@ -34,21 +34,43 @@ pub(crate) struct Dense {
     pub scale: Option<(f64, f64)>,
 }
 
+/// Bytes of an array of such voxels, once its shape is sound.
+fn bytes_of(shape: [usize; 3], voxel_bytes: u64) -> Result<u64, Fault> {
+    let [x, y, z] = shape;
+    if shape.contains(&0) {
+        return Err(Fault::Damaged(format!("the array of {x} x {y} x {z} voxels has none at all")));
+    }
+    let longest = i32::MAX as usize - EDGE;
+    shape
+        .iter()
+        .try_fold(voxel_bytes, |bytes, &edge| bytes.checked_mul(edge as u64).filter(|_| edge <= longest))
+        .ok_or_else(|| {
+            Fault::Damaged(format!("an array of {x} x {y} x {z} voxels is too large for any memory"))
+        })
+}
+
+/// Refuses arrays that have no voxels, or that would take far more memory as a tree.
+pub(crate) fn sound_shape(shape: [usize; 3], voxel_bytes: u64) -> Result<(), Fault> {
+    let bytes = bytes_of(shape, voxel_bytes)?;
+    let leaves = shape.iter().fold(1u64, |leaves, edge| leaves.saturating_mul(edge.div_ceil(EDGE) as u64));
+    let grown = leaves.saturating_mul(LEAF_VOXELS as u64 * 4);
+    if grown > GROWTH_ALLOWED && grown / MOST_GROWTH > bytes {
+        let [x, y, z] = shape;
+        return Err(Fault::Unsupported(format!(
+            "an array of {x} x {y} x {z} voxels is too thin to be a volume; give it at least 8 voxels an axis"
+        )));
+    }
+    Ok(())
+}
+
 impl Dense {
     /// Bytes of the array, once its shape is sound.
     pub(crate) fn bytes(&self) -> Result<u64, Fault> {
-        let [x, y, z] = self.shape;
-        if self.shape.contains(&0) {
-            return Err(Fault::Damaged(format!("the array of {x} x {y} x {z} voxels has none at all")));
-        }
-        let longest = i32::MAX as usize - EDGE;
-        let voxel = (self.channels * self.element.size()) as u64;
-        self.shape
-            .iter()
-            .try_fold(voxel, |bytes, &edge| bytes.checked_mul(edge as u64).filter(|_| edge <= longest))
-            .ok_or_else(|| {
-                Fault::Damaged(format!("an array of {x} x {y} x {z} voxels is too large for any memory"))
-            })
+        bytes_of(self.shape, self.voxel_bytes())
+    }
+
+    fn voxel_bytes(&self) -> u64 {
+        (self.channels * self.element.size()) as u64
     }
 
     /// Reads the array from `source`, which holds `available` bytes if that is known.
@@ -62,13 +84,7 @@ impl Dense {
                 "truncated: {x} x {y} x {z} voxels take {bytes} bytes, the file has {available} for them"
             )));
         }
-        let leaves: u64 = self.shape.iter().map(|edge| edge.div_ceil(EDGE) as u64).product();
-        let grown = leaves.saturating_mul(LEAF_VOXELS as u64 * 4);
-        if grown > GROWTH_ALLOWED && grown / MOST_GROWTH > bytes {
-            return Err(Fault::Unsupported(format!(
-                "an array of {x} x {y} x {z} voxels is too thin to be a volume; give it at least 8 voxels an axis"
-            )));
-        }
+        sound_shape(self.shape, self.voxel_bytes())?;
         let reserve = available.is_some();
         // Adding -0 changes nothing, not even the sign of a zero.
         let (slope, intercept) = self.scale.unwrap_or((1.0, -0.0));

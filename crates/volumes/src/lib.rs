@@ -19,6 +19,7 @@
 
 #![forbid(unsafe_code)]
 
+mod array;
 mod blosc;
 pub mod bricks;
 mod dense;
@@ -41,6 +42,7 @@ pub mod vdb;
 mod vol;
 mod write;
 
+pub use array::{ArrayError, tree_of_array};
 pub use bricks::{BrickGrid, Filter, Storage};
 pub use element::{AxisOrder, ByteOrder, Element};
 pub use error::{ReadError, WriteError};

@@ -1,0 +1,3 @@
+"""Types of the compiled part."""
+
+__version__: str

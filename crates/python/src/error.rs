@@ -1,0 +1,25 @@
+//! Errors as Python exceptions, with the same one line that the command prints.
+//!
+//! `tyndall.Error` is a `ValueError`; `tyndall.FileError`, for what the operating system refuses, is an `OSError` as well. Both are
+//! written in Python (`_errors.py`), as only there a class can have two such bases.
+
+use std::fmt::Display;
+
+use pyo3::PyErr;
+
+mod classes {
+    use pyo3::import_exception;
+
+    import_exception!(tyndall._errors, Error);
+    import_exception!(tyndall._errors, FileError);
+}
+
+/// Something that the user gave is wrong.
+pub(crate) fn wrong(message: impl Display) -> PyErr {
+    classes::Error::new_err(message.to_string())
+}
+
+/// A file cannot be read or written.
+pub(crate) fn file(message: impl Display) -> PyErr {
+    classes::FileError::new_err(message.to_string())
+}

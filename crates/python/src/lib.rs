@@ -1,0 +1,19 @@
+//! `tyndall._tyndall`: what the Python package `tyndall` has from Rust.
+//!
+//! One file an idea; this one only lists what Python sees. What is written in Python, such as progress bars, xarray and the
+//! examples, stands in `python/tyndall/`.
+
+mod error;
+
+use pyo3::prelude::pymodule;
+
+/// The compiled part of `tyndall`.
+#[pymodule]
+mod _tyndall {
+    use pyo3::prelude::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

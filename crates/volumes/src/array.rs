@@ -1,0 +1,130 @@
+//! Grids from arrays that are in memory already, in whatever order and type they are.
+//!
+//! As a reader of files would make them: every voxel is active, those outside are inactive and 0, and a full leaf of one
+//! value becomes a tile. The array is asked voxel by voxel, so that it need not be copied into another order first.
+
+use glam::DAffine3;
+
+use crate::dense::{EDGE, sound_shape};
+use crate::fault::Fault;
+use crate::{Grid, GridClass, GridValues, LEAF_VOXELS, Leaf, Tile, Tree};
+
+/// Why an array is no volume, as one line with the mend.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ArrayError(String);
+
+/// The tree of an array whose voxel (x, y, z) is `value([x, y, z])`.
+///
+/// # Examples
+///
+/// ```
+/// let tree = tyndall_volumes::tree_of_array([8, 8, 9], |[_, _, z]| if z < 8 { 1.0 } else { 2.0f32 })?;
+/// assert_eq!((tree.tiles.len(), tree.leaves.len()), (1, 1));
+/// # Ok::<(), tyndall_volumes::ArrayError>(())
+/// ```
+///
+/// # Errors
+/// If the array has no voxels, or as a tree would take far more memory than as an array.
+pub fn tree_of_array<T>(shape: [usize; 3], value: impl Fn([usize; 3]) -> T) -> Result<Tree<T>, ArrayError>
+where
+    T: Copy + Default + PartialEq,
+{
+    sound_shape(shape, size_of::<T>() as u64).map_err(|fault| match fault {
+        Fault::Damaged(what) | Fault::Unsupported(what) => ArrayError(what),
+        Fault::Io(error) => ArrayError(error.to_string()),
+    })?;
+    let mut tree =
+        Tree { background: T::default(), tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
+    for x in (0..shape[0]).step_by(EDGE) {
+        for y in (0..shape[1]).step_by(EDGE) {
+            for z in (0..shape[2]).step_by(EDGE) {
+                push_leaf(&mut tree, shape, [x, y, z], &value);
+            }
+        }
+    }
+    tree.leaf_values.shrink_to_fit();
+    Ok(tree)
+}
+
+/// Adds the leaf whose least voxel is `corner`.
+fn push_leaf<T>(tree: &mut Tree<T>, shape: [usize; 3], corner: [usize; 3], value: &impl Fn([usize; 3]) -> T)
+where
+    T: Copy + Default + PartialEq,
+{
+    let edges = [0, 1, 2].map(|axis| EDGE.min(shape[axis] - corner[axis]));
+    let origin = corner.map(|index| index as i32);
+    let mut values = [T::default(); LEAF_VOXELS];
+    for x in 0..edges[0] {
+        for y in 0..edges[1] {
+            for z in 0..edges[2] {
+                values[x << 6 | y << 3 | z] = value([corner[0] + x, corner[1] + y, corner[2] + z]);
+            }
+        }
+    }
+    if edges == [EDGE; 3] && values.iter().all(|value| *value == values[0]) {
+        tree.tiles.push(Tile { origin, log2_edge: 3, value: values[0], active: true });
+        return;
+    }
+    let row = 0xffu64 >> (EDGE - edges[2]);
+    let rows = (0..edges[1]).fold(0, |rows, y| rows | row << (8 * y));
+    let active = std::array::from_fn(|x| if x < edges[0] { rows } else { 0 });
+    tree.leaves.push(Leaf { origin, active });
+    tree.leaf_values.extend_from_slice(&values);
+}
+
+impl Grid {
+    /// A grid that no file has: a name, where it is, and values.
+    pub fn in_memory(name: &str, index_to_world: DAffine3, values: GridValues) -> Self {
+        Self {
+            name: name.to_owned(),
+            class: GridClass::Unknown,
+            index_to_world,
+            saved_as_half: false,
+            codec: "none".to_owned(),
+            metadata: Vec::new(),
+            values,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ReadRequest, read_bytes};
+
+    #[test]
+    fn an_array_makes_the_same_grid_as_its_file() {
+        let shape = [9, 16, 11];
+        let number = |[x, y, z]: [usize; 3]| if y < 8 { 0.0 } else { (x * 1000 + y * 50 + z) as f32 };
+        let mut bytes = Vec::new();
+        for z in 0..shape[2] {
+            for y in 0..shape[1] {
+                (0..shape[0]).for_each(|x| bytes.extend_from_slice(&number([x, y, z]).to_le_bytes()));
+            }
+        }
+        let name = "a_9x16x11_float32.raw";
+        let file = read_bytes(&bytes, name.as_ref(), &ReadRequest::default()).unwrap();
+        let GridValues::Float(read) = &file.grids[0].values else { panic!("floats are read as floats") };
+        let mut made = tree_of_array(shape, number).unwrap();
+        let by_origin = |tree: &mut Tree<f32>| tree.tiles.sort_by_key(|tile| tile.origin);
+        let mut read = read.clone();
+        by_origin(&mut read);
+        by_origin(&mut made);
+        assert_eq!(made.tiles, read.tiles);
+        assert_eq!(made.leaves.len(), read.leaves.len());
+        for (leaf, values) in made.leaves.iter().zip(made.leaf_values.chunks(LEAF_VOXELS)) {
+            let same = read.leaves.iter().position(|other| other.origin == leaf.origin).unwrap();
+            assert_eq!(leaf.active, read.leaves[same].active);
+            assert_eq!(values, &read.leaf_values[same * LEAF_VOXELS..][..LEAF_VOXELS]);
+        }
+    }
+
+    #[test]
+    fn arrays_that_are_no_volumes_are_refused() {
+        let refused = |shape| tree_of_array(shape, |_| 0u8).unwrap_err().to_string();
+        assert!(refused([4, 0, 4]).contains("has none at all"));
+        assert!(refused([1, 1, 100_000_000]).contains("too thin"));
+        assert!(refused([1 << 40, 1, 1]).contains("too large"));
+    }
+}
