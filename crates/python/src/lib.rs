@@ -3,7 +3,13 @@
 //! One file an idea; this one only lists what Python sees. What is written in Python, such as progress bars, xarray and the
 //! examples, stands in `python/tyndall/`.
 
+mod arrays;
+mod effort;
 mod error;
+mod interrupt;
+mod mie;
+mod phase;
+mod slab;
 
 use pyo3::prelude::pymodule;
 
@@ -11,6 +17,13 @@ use pyo3::prelude::pymodule;
 #[pymodule]
 mod _tyndall {
     use pyo3::prelude::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_export]
+    use crate::mie::{mie_spheres, refractive_index};
+    #[pymodule_export]
+    use crate::phase::PhaseFunction;
+    #[pymodule_export]
+    use crate::slab::slab;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
