@@ -5,12 +5,11 @@ mod scene;
 use std::path::{Path, PathBuf};
 
 use miette::{bail, miette};
+use tyndall_session::{check_writable, is_foreign, read_volume};
 use tyndall_volumes::{Codec, Format, WriteOptions};
 
-use crate::imported::{ImportArgs, is_foreign};
-use crate::output::check_writable;
+use crate::input_args::{ImportArgs, RawArgs};
 use crate::terminal::{answer, tell};
-use crate::volume_input::{self, RawArgs};
 
 /// Write a volume in another format, chosen by the extension, or a scene of pbrt or Mitsuba as a scene file
 ///
@@ -67,12 +66,12 @@ pub fn run(args: Args) -> miette::Result<()> {
                 args.output.display()
             );
         }
-        if !args.grid.is_empty() || args.half || args.codec.is_some() || args.raw.is_given() {
+        if !args.grid.is_empty() || args.half || args.codec.is_some() || args.raw.volume().is_some() {
             bail!("{}: --grid, --half, --codec and --raw-shape are for volumes", args.input.display());
         }
         return scene::convert(&args.input, &args.output, &args.import);
     }
-    args.import.refuse(&args.input)?;
+    args.import.options().refuse(&args.input)?;
     let format = Format::from_extension(&args.output);
     if args.codec.is_some() && !matches!(format, Some(Format::OpenVdb | Format::NanoVdb)) {
         bail!("{}: --codec is for .vdb and .nvdb; leave it out", args.output.display());
@@ -85,7 +84,7 @@ pub fn run(args: Args) -> miette::Result<()> {
         None => Codec::default(),
     };
     check_writable([args.output.as_path()])?;
-    let file = volume_input::read(&args.input, &args.grid, &args.raw)?;
+    let file = read_volume(&args.input, &args.grid, args.raw.volume())?;
     for (name, why) in &file.skipped {
         tell(format!("note: grid `{name}` is left out: {why}"));
     }

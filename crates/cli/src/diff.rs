@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use miette::{IntoDiagnostic, miette};
 use tyndall_film::comparison::{Comparison, ErrorSource, Picture, compare};
+use tyndall_session::check_input;
 
 use crate::terminal::answer;
-use crate::volume_input::check_input;
 
 /// Compare two EXR pictures: errors, means, and whether they differ by more than noise
 ///

@@ -13,13 +13,11 @@ use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
-use tyndall_scene::{Ray, Scene, SceneDescription, build};
+use tyndall_scene::{Ray, Scene, SceneDescription};
+use tyndall_session::check_writable;
 
-use crate::imported::ImportArgs;
-use crate::output::check_writable;
-use crate::render::input;
+use crate::input_args::{ImportArgs, RawArgs, open};
 use crate::terminal::{answer, tell};
-use crate::volume_input::RawArgs;
 use comparison::{Declared, Homogeneous, RayComparison};
 use pictures::{PictureOptions, Pictures};
 use rays::{ChosenRay, Request};
@@ -95,9 +93,9 @@ struct Report {
 /// Samples, and prints or writes what came of it.
 pub fn run(args: Args) -> miette::Result<()> {
     check_writable(args.output.as_deref())?;
-    let input = input::load(args.input.as_deref(), &args.set, &args.raw, &args.import)?;
-    let built = build(&input.description, &input.folder)?;
-    let mut notes: Vec<String> = input.notes.iter().chain(&built.notes).map(ToString::to_string).collect();
+    let input = open(args.input.as_deref(), &args.set, &args.raw, &args.import)?;
+    let built = input.build()?;
+    let mut notes: Vec<String> = input.notes().iter().chain(&built.notes).map(ToString::to_string).collect();
     if built.scene.is_chromatic() {
         notes.push(
             "some extinction depends on colour: on rays the estimators see the mean of its channels".into(),
@@ -106,7 +104,7 @@ pub fn run(args: Args) -> miette::Result<()> {
     for note in &notes {
         tell(format!("note: {note}"));
     }
-    let report = report(&args, &built.scene, &input.description, notes)?;
+    let report = report(&args, &built.scene, input.description(), notes)?;
     if let Some(path) = &args.output {
         let text = if is_html(path) { page::page(&report) } else { figures::sheet(&report) };
         tyndall_film::write_atomically(path, |file| file.write_all(text.as_bytes())).into_diagnostic()?;

@@ -8,11 +8,10 @@ mod table;
 use std::path::PathBuf;
 
 use miette::{IntoDiagnostic, miette};
+use tyndall_session::{is_foreign, read_volume};
 
-use crate::imported::{ImportArgs, is_foreign};
-use crate::render::input;
+use crate::input_args::{ImportArgs, RawArgs, open};
 use crate::terminal::answer;
-use crate::volume_input::{self, RawArgs};
 use report::Report;
 
 /// Tell what is in a volume file or a scene: grids, types, boxes, ranges, memory, optical thickness
@@ -48,8 +47,8 @@ pub fn run(args: Args) -> miette::Result<()> {
     if is_native || is_foreign(&args.file) {
         return inspect_scene(&args);
     }
-    args.import.refuse(&args.file)?;
-    let file = volume_input::read(&args.file, &args.grid, &args.raw)?;
+    args.import.options().refuse(&args.file)?;
+    let file = read_volume(&args.file, &args.grid, args.raw.volume())?;
     let report = Report::new(&file, &args.probe);
     if args.json {
         answer(serde_json::to_string(&report).into_diagnostic()? + "\n")
@@ -65,7 +64,7 @@ fn inspect_scene(args: &Args) -> miette::Result<()> {
             args.file.display()
         ));
     }
-    let input = input::load(Some(&args.file), &[], &args.raw, &args.import)?;
+    let input = open(Some(&args.file), &[], &args.raw, &args.import)?;
     let report = scene::SceneReport::new(&input)?;
     if args.json {
         answer(serde_json::to_string(&report).into_diagnostic()? + "\n")

@@ -8,17 +8,14 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_scene::build;
 use tyndall_scene::description::MeterDescription;
 use tyndall_transport::{Measurement, measure};
 
 use crate::Done;
 use crate::effort::Effort;
-use crate::imported::ImportArgs;
+use crate::input_args::{ImportArgs, RawArgs, open};
 use crate::interrupt::cancel_on_interrupt;
-use crate::render::input;
 use crate::terminal::{answer, tell};
-use crate::volume_input::RawArgs;
 
 /// Measure fluxes and radiances in a scene: the values of its `[[meter]]` tables, with their standard errors
 ///
@@ -62,16 +59,16 @@ pub struct Reading<'a> {
 
 /// Measures with one meter after the other, and prints.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = input::load(Some(&args.input), &args.set, &RawArgs::default(), &args.import)?;
-    let description = &input.description;
+    let input = open(Some(&args.input), &args.set, &RawArgs::default(), &args.import)?;
+    let description = input.description();
     let shown = args.input.display();
     if description.meters.is_empty() {
         return Err(miette!(
             "{shown}: has no meters; add a [[meter]] table, such as type = \"layer\" with bottom and top"
         ));
     }
-    let built = build(description, &input.folder)?;
-    input.notes.iter().chain(&built.notes).for_each(|note| tell(format!("note: {note}")));
+    let built = input.build()?;
+    input.notes().iter().chain(&built.notes).for_each(|note| tell(format!("note: {note}")));
     let cancel = cancel_on_interrupt()?;
     let mut readings = Vec::new();
     for (number, meter) in description.meters.iter().enumerate() {

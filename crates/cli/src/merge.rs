@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use miette::IntoDiagnostic;
 use tyndall_film::Accumulation;
+use tyndall_session::{Output, check_input, check_writable, write_all};
 
-use crate::output::{Output, check_writable, parse_exposure, write_all};
+use crate::render::parse_exposure;
 use crate::terminal::{answer, tell};
-use crate::volume_input::check_input;
 
 /// Join renders of the same scene with disjoint samples into one picture
 ///

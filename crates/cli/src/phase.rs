@@ -12,8 +12,8 @@ use serde_json::json;
 use tyndall_optics::PhaseFunction;
 use tyndall_optics::mie::MieAverage;
 use tyndall_scene::{MieSpheres, PhaseCurve};
+use tyndall_session::check_writable;
 
-use crate::output::check_writable;
 use crate::plot::Kind;
 use crate::terminal::{answer, tell};
 use angles::Angles;

@@ -1,31 +1,31 @@
 //! `tyndall render`: a scene or a volume becomes a picture with its error.
 
 mod estimators;
-pub mod input;
 mod progress;
 pub mod stop;
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_film::{Accumulation, Colours, Crop, Film, ImageMetadata, Layers};
-use tyndall_scene::description::{FilmDescription, Integrator, Layer, Sampler, SceneDescription};
-use tyndall_scene::{Observer, Scene, build, observers, scene_hash};
-use tyndall_transport::counters;
-use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer};
+use tyndall_film::{Accumulation, Colours};
+use tyndall_scene::description::{Integrator, Sampler};
+use tyndall_scene::observers;
+use tyndall_session::{Checkpoint, Input, Job, JobOptions, Output, check_writable, colours, write_all};
+use tyndall_transport::{Control, Outcome, counters};
 
 use crate::Done;
-use crate::imported::ImportArgs;
-use crate::output::{Output, check_writable, parse_exposure, write_all};
+use crate::input_args::{ImportArgs, RawArgs, open};
 use crate::terminal::{answer, tell};
-use crate::volume_input::RawArgs;
 use estimators::EstimatorArgs;
-use input::Input;
 use progress::{Progress, ProgressStyle};
-use stop::{Goal, Plan};
+use stop::GoalArgs;
+
+/// Time between two checkpoints.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// Render a scene file or a volume file to a picture with its error
 ///
@@ -47,7 +47,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     output: Vec<Output>,
     #[command(flatten)]
-    goal: Goal,
+    goal: GoalArgs,
     /// Render only the samples A to B−1 of each pixel
     #[arg(long, value_name = "A..B", value_parser = parse_samples, conflicts_with_all = ["spp", "error", "time"])]
     samples: Option<Range<u64>>,
@@ -99,7 +99,7 @@ impl Args {
         Args {
             input: None,
             output: Vec::new(),
-            goal: Goal::default(),
+            goal: GoalArgs::default(),
             samples: None,
             seed: None,
             threads: None,
@@ -119,10 +119,10 @@ impl Args {
     }
 }
 
-/// Loads, builds, renders, writes.
+/// Opens, builds, renders, writes.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = input::load(args.input.as_deref(), &overrides(&args), &args.raw, &args.import)?;
-    let description = &input.description;
+    let input = open(args.input.as_deref(), &overrides(&args), &args.raw, &args.import)?;
+    let description = input.description();
     if args.resolution.is_some() && description.film.crop.is_some() {
         return Err(miette!(
             "--resolution: the scene has film.crop, which counts pixels of its own resolution; give both as --set \
@@ -132,9 +132,36 @@ pub fn run(args: Args) -> miette::Result<Done> {
     if args.print_scene {
         return print_scene(&input).map(|()| Done::All);
     }
-    let observers = observers(description);
+    args.estimators.check(description.render.integrator)?;
+    let outputs = outputs(&args, &input)?;
+    let options = JobOptions { threads: args.threads.map(usize::from), estimators: args.estimators.chosen() };
+    let mut job = Job::new(&input, &options)?;
+    job.notes().iter().for_each(|note| tell(format!("note: {note}")));
+    if args.integrator.is_none() && args.estimators.integrator().is_some() {
+        tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
+    }
+    let mut checkpoint = open_checkpoint(&args, &mut job)?;
+    let end = render(&args, description.render.spp, &mut job, checkpoint.as_mut())?;
+
+    let pictures = job.pictures();
+    if pictures.iter().any(|picture| picture.film.mean_sample_count() == 0.0) {
+        tell("interrupted before all was rendered once; nothing is written");
+        return Ok(end);
+    }
+    let exposure = args.exposure.unwrap_or(description.film.exposure) as f32;
+    let saved = checkpoint.map_or(Ok(()), |mut checkpoint| checkpoint.save(&pictures[0]));
+    write_all(&outputs, pictures, exposure)?;
+    saved.into_diagnostic()?;
+    report(pictures, &outputs, &end);
+    Ok(end)
+}
+
+/// The files to write, once it is known that they can hold the picture and be written.
+fn outputs(args: &Args, input: &Input) -> miette::Result<Vec<Output>> {
+    let observers = observers(input.description());
     let colours = colours(observers[0]);
-    let outputs = if args.output.is_empty() { input.default_outputs(&colours) } else { args.output.clone() };
+    let outputs =
+        if args.output.is_empty() { default_outputs(input.stem(), &colours) } else { args.output.clone() };
     for output in &outputs {
         output.check_colours(&colours, observers.len())?;
     }
@@ -144,72 +171,43 @@ pub fn run(args: Args) -> miette::Result<Done> {
         ));
     }
     check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
+    Ok(outputs)
+}
 
-    let [width, height] = description.film.picture_size();
-    // First of all, as it may be too large for this machine.
-    let new_film = || Film::new(width, height, layers(description)).into_diagnostic();
-    let films = observers.iter().map(|_| new_film()).collect::<miette::Result<Vec<Film>>>()?;
-    let built = build(description, &input.folder)?;
-    let estimators =
-        args.estimators.choose(description.render.integrator, args.input.as_deref(), &built.scene)?;
-    for note in input.notes.iter().chain(&built.notes).chain(&estimators.notes()) {
-        tell(format!("note: {note}"));
-    }
-    if args.integrator.is_none() && args.estimators.integrator().is_some() {
-        tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
-    }
-    if built.scene.is_spectral() {
-        let why = if built.scene.is_chromatic() {
-            "some extinction or phase function depends on colour"
-        } else {
-            "the picture is computed from wavelengths"
-        };
-        tell(format!("note: {why}: the spectral integrator renders it"));
-    }
-    let mut pictures = Vec::new();
-    for (film, observer) in films.into_iter().zip(&observers) {
-        pictures.push(open_picture(&args, description, &input.folder, estimators, film, *observer)?);
-    }
-    let plan = Plan::new(&args.goal, args.samples.clone(), u64::from(description.render.spp));
-    let end = render(&args, built.scene, &observers, description, &plan, &mut pictures)?;
+/// A picture to work with and, of colours, one to look at, otherwise the numbers, in the working folder.
+fn default_outputs(stem: &str, colours: &Colours) -> Vec<Output> {
+    [".exr", if *colours == Colours::Rgb { ".png" } else { ".json" }]
+        .iter()
+        .filter_map(|extension| format!("{stem}{extension}").parse().ok())
+        .collect()
+}
 
-    if pictures.iter().any(|picture| picture.film.mean_sample_count() == 0.0) {
-        tell("interrupted before all was rendered once; nothing is written");
-        return Ok(end);
+/// The checkpoint that is asked for; the job goes on from it if it is there.
+fn open_checkpoint(args: &Args, job: &mut Job) -> miette::Result<Option<Checkpoint>> {
+    let Some(path) = &args.checkpoint else { return Ok(None) };
+    if path.exists() {
+        if !args.resume {
+            return Err(miette!(
+                "{}: exists already; add --resume to go on from it, or name another file",
+                path.display()
+            ));
+        }
+        job.resume(path)?;
     }
-    let exposure = args.exposure.unwrap_or(description.film.exposure) as f32;
-    let saved = args.checkpoint.as_deref().map_or(Ok(()), |checkpoint| pictures[0].write(checkpoint));
-    write_all(&outputs, &pictures, exposure)?;
-    saved.into_diagnostic()?;
-    report(&pictures, &outputs, &end);
-    Ok(end)
+    Ok(Some(Checkpoint::new(path, CHECKPOINT_INTERVAL)))
 }
 
 /// `--print-scene`: what is not as in the renderer that the scene is for is told as well.
 fn print_scene(input: &Input) -> miette::Result<()> {
-    if let Some(written) = &input.written {
-        input.notes.iter().for_each(|note| tell(format!("note: {note}")));
+    if let Some(written) = input.written() {
+        input.notes().iter().for_each(|note| tell(format!("note: {note}")));
         if !written.paths().is_empty() {
             tell(
                 "note: files in the folder of temporary files are gone after this; `tyndall convert` keeps them",
             );
         }
     }
-    answer(&input.text)
-}
-
-/// What the channels of an observer's film are.
-fn colours(observer: Observer) -> Colours {
-    match observer {
-        Observer::Rgb | Observer::SpectralRgb => Colours::Rgb,
-        Observer::SpectralXyz => Colours::Xyz,
-        Observer::Bands(wavelengths_nm) => Colours::Bands(wavelengths_nm),
-    }
-}
-
-/// Where the picture lies in the whole.
-fn crop(film: &FilmDescription) -> Option<Crop> {
-    film.crop.map(|[left, top, ..]| Crop { corner: [left, top], full_size: film.resolution })
+    answer(input.to_toml())
 }
 
 /// The options that stand for keys of the scene, as `--set` would give them.
@@ -237,133 +235,34 @@ fn sampler_name(sampler: Sampler) -> &'static str {
     }
 }
 
-/// The options as they are kept with the picture: samples of different ones are not merged, as their errors differ.
-fn options(description: &SceneDescription, estimators: Estimators) -> String {
-    let sampler = match description.render.sampler {
-        Sampler::Independent => String::new(),
-        // Readers of the picture should know as well.
-        Sampler::Sobol => " sampler=sobol standard-errors=upper-estimates".to_owned(),
-    };
-    let estimators = estimators::as_options(estimators);
-    format!("integrator={}{sampler}{estimators}", name(description.render.integrator))
-}
-
-/// An empty film, or the one of the checkpoint.
-fn open_picture(
-    args: &Args,
-    description: &SceneDescription,
-    folder: &Path,
-    estimators: Estimators,
-    film: Film,
-    observer: Observer,
-) -> miette::Result<Accumulation> {
-    let metadata = ImageMetadata {
-        scene_hash: scene_hash(description, folder)?.to_string(),
-        version: env!("CARGO_PKG_VERSION").to_string(),
-        options: options(description, estimators),
-        seed: u64::from(description.render.seed),
-        colours: colours(observer),
-        crop: crop(&description.film),
-        seconds: 0.0,
-    };
-    let empty = Accumulation { film, metadata };
-    let Some(checkpoint) = args.checkpoint.as_deref().filter(|path| path.exists()) else { return Ok(empty) };
-    if !args.resume {
-        return Err(miette!(
-            "{}: exists already; add --resume to go on from it, or name another file",
-            checkpoint.display()
-        ));
-    }
-    let saved = Accumulation::read(checkpoint).into_diagnostic()?;
-    let same = |a: &ImageMetadata, b: &ImageMetadata| {
-        (&a.scene_hash, &a.version, &a.options, a.seed) == (&b.scene_hash, &b.version, &b.options, b.seed)
-    };
-    let shape = |film: &Film| (film.width(), film.height(), film.layers());
-    if !same(&saved.metadata, &empty.metadata) || shape(&saved.film) != shape(&empty.film) {
-        return Err(miette!(
-            "{}: is of another scene, size, seed, integrator, sampler, estimators, layers or version; name another --checkpoint",
-            checkpoint.display()
-        ));
-    }
-    Ok(saved)
-}
-
-/// The layers that the scene asks for; if it does not say, those that are about something in it. Shadow catchers always
-/// have theirs, which the picture's alpha needs.
-fn layers(description: &SceneDescription) -> Layers {
-    let asked = description.film.layers.as_ref();
-    let wanted = |layer| asked.is_none_or(|layers| layers.contains(&layer));
-    let of_surfaces = |layer| wanted(layer) && (asked.is_some() || !description.shapes.is_empty());
-    let has_catcher = description.shapes.iter().any(|shape| shape.shadow_catcher);
-    Layers {
-        depth: wanted(Layer::Depth),
-        albedo: wanted(Layer::Albedo),
-        emission: wanted(Layer::Emission),
-        single: wanted(Layer::Single),
-        multiple: wanted(Layer::Multiple),
-        normal: of_surfaces(Layer::Normal),
-        object_id: of_surfaces(Layer::ObjectId),
-        shadow_catcher: has_catcher || asked.is_some_and(|layers| layers.contains(&Layer::ShadowCatcher)),
-    }
-}
-
-/// Renders pass after pass, each for all observers, until the plan is fulfilled or Ctrl-C is pressed.
+/// Renders until the goal is reached or Ctrl-C is pressed.
 fn render(
     args: &Args,
-    scene: Scene,
-    observers: &[Observer],
-    description: &SceneDescription,
-    plan: &Plan,
-    pictures: &mut [Accumulation],
+    scene_spp: u32,
+    job: &mut Job,
+    mut checkpoint: Option<&mut Checkpoint>,
 ) -> miette::Result<Done> {
     let control = Arc::new(Control::default());
     stop_on_interrupt(&control)?;
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let options = RenderOptions {
-        integrator: description.render.integrator,
-        sampler: description.render.sampler,
-        seed: pictures[0].metadata.seed,
-        threads: args.threads.map_or(cores, usize::from),
-        estimators: args.estimators.chosen(),
-    };
-    let [width, height] = scene.resolution.map(u64::from);
-    let pixels = width * height * observers.len() as u64;
-    let scenes: Vec<Scene> =
-        observers.iter().map(|observer| Scene { observer: *observer, ..scene.clone() }).collect();
-    let renderers: Vec<Renderer<'_>> =
-        scenes.iter().map(|scene| Renderer::new(scene, options.integrator)).collect();
-    let mut clock = stop::Clock::start(pictures[0].metadata.seconds);
-    let progress = Progress::start(args.progress, pixels, plan.spp(), Arc::clone(&control));
-    let mut end = Done::All;
-    'passes: while let Some(pass) = plan.next_pass(pictures, &clock) {
-        for (picture, renderer) in pictures.iter_mut().zip(&renderers) {
-            picture.film.open_range(pass.start).into_diagnostic()?;
-            let outcome = renderer.render_pass(&mut picture.film, pass.end, &options, &control);
-            picture.metadata.seconds = clock.seconds();
-            if outcome == Outcome::Cancelled {
-                end = Done::Interrupted;
-                break 'passes;
-            }
-            // Only what was resumed can hold more than was asked for now.
-            let resumed = args.checkpoint.as_deref().unwrap_or(Path::new("the picture"));
-            picture
-                .film
-                .complete_through(pass.end)
-                .map_err(|error| miette!("{}: {error} (--spp or --samples)", resumed.display()))?;
-        }
+    let plan = args.goal.with_samples(args.samples.clone()).plan(scene_spp);
+    let progress = Progress::start(args.progress, job.pixels(), plan.spp(), Arc::clone(&control));
+    let outcome = job.run(&plan, &control, |pictures| {
         progress.pass_done(&pictures[0].film);
-        if let Some(checkpoint) = args.checkpoint.as_deref().filter(|_| clock.checkpoint_is_due()) {
+        if let Some(checkpoint) = &mut checkpoint {
             // The next may go well, and the picture itself is not lost.
-            if let Err(error) = pictures[0].write(checkpoint) {
+            if let Err(error) = checkpoint.save_if_due(&pictures[0]) {
                 tell(format!("note: no checkpoint: {error}"));
             }
         }
-    }
+    });
     progress.finish();
     if counters::COUNTED {
         tell(format!("counters: {}", control.counters.counters().json()));
     }
-    Ok(end)
+    Ok(match outcome? {
+        Outcome::Complete => Done::All,
+        Outcome::Cancelled => Done::Interrupted,
+    })
 }
 
 /// The first Ctrl-C ends the render, which saves what there is; the second ends the program.
@@ -413,6 +312,12 @@ fn parse_resolution(text: &str) -> Result<[u32; 2], String> {
         .ok_or("write WIDTHxHEIGHT, such as 1280x720".into())
 }
 
+/// `--exposure`: more stops than any picture has would only overflow.
+pub fn parse_exposure(text: &str) -> Result<f64, String> {
+    let stops = text.parse::<f64>().ok().filter(|stops| stops.abs() <= 64.0);
+    stops.ok_or("write stops from -64 to 64, such as 1.5".into())
+}
+
 fn parse_integrator(text: &str) -> Result<Integrator, String> {
     match text {
         "fast" => Ok(Integrator::Fast),
@@ -426,5 +331,16 @@ fn parse_sampler(text: &str) -> Result<Sampler, String> {
         "independent" => Ok(Sampler::Independent),
         "sobol" => Ok(Sampler::Sobol),
         _ => Err("there are `independent` and `sobol`".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exposures_are_finite() {
+        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
+        assert!(["nan", "inf", "1e30", ""].iter().all(|text| parse_exposure(text).is_err()));
     }
 }

@@ -8,8 +8,7 @@ use std::io::{ErrorKind, Write};
 
 use miette::{Diagnostic, Report, miette};
 use tyndall_scene::SceneError;
-
-use crate::imported::Unsupported;
+use tyndall_session::SessionError;
 
 /// Writes an answer to standard output.
 pub fn answer(text: impl Display) -> miette::Result<()> {
@@ -30,19 +29,21 @@ pub fn tell(line: impl Display) {
 
 /// Writes why the command failed: one line for each problem, followed by its place in the scene file.
 pub fn tell_error(report: &Report) {
-    match report.downcast_ref::<SceneError>() {
-        Some(error) => error.problems().iter().for_each(|problem| {
-            tell(error_line(problem));
-            if let (Some((line, _)), Some(snippet)) = (problem.position, snippet(problem)) {
-                let margin = line.to_string();
-                let [text, marker] = snippet;
-                tell(format!("  {margin} | {text}\n  {:width$} | {marker}", "", width = margin.len()));
-            }
-        }),
-        None => match report.downcast_ref::<Unsupported>() {
-            Some(Unsupported(lines)) => lines.iter().for_each(|line| tell(error_line(line))),
-            None => tell(error_line(report)),
-        },
+    match (report.downcast_ref::<SceneError>(), report.downcast_ref::<SessionError>()) {
+        (Some(error), _) | (_, Some(SessionError::Scene(error))) => tell_problems(error),
+        (_, Some(SessionError::Unsupported(lines))) => lines.iter().for_each(|line| tell(error_line(line))),
+        _ => tell(error_line(report)),
+    }
+}
+
+fn tell_problems(error: &SceneError) {
+    for problem in error.problems() {
+        tell(error_line(problem));
+        if let (Some((line, _)), Some(snippet)) = (problem.position, snippet(problem)) {
+            let margin = line.to_string();
+            let [text, marker] = snippet;
+            tell(format!("  {margin} | {text}\n  {:width$} | {marker}", "", width = margin.len()));
+        }
     }
 }
 

@@ -9,27 +9,24 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic, miette};
+use tyndall_session::{WrittenFiles, check_writable};
 
-use crate::imported::{ImportArgs, WrittenFiles};
-use crate::output::check_writable;
-use crate::render::input;
+use crate::input_args::{ImportArgs, RawArgs, open};
 use crate::terminal::{answer, tell};
-use crate::volume_input::RawArgs;
 
 /// Imports, writes, and says what was written.
 pub fn convert(input: &Path, output: &Path, args: &ImportArgs) -> miette::Result<()> {
     check_writable([output])?;
-    let scene = input::load(Some(input), &[], &RawArgs::default(), args)?;
-    scene.notes.iter().for_each(|note| tell(format!("note: {note}")));
+    let scene = open(Some(input), &[], &RawArgs::default(), args)?;
+    scene.notes().iter().for_each(|note| tell(format!("note: {note}")));
     let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let beside = files_folder(output);
-    let kept =
-        scene.written.as_ref().map_or(Ok(HashMap::new()), |written| keep(written, &folder.join(&beside)))?;
+    let kept = scene.written().map_or(Ok(HashMap::new()), |written| keep(written, &folder.join(&beside)))?;
 
     let folder = absolute(folder)?;
-    let mut description = scene.description.clone();
+    let mut description = scene.description().clone();
     for file in description.files_mut() {
-        let path = scene.folder.join(&*file);
+        let path = scene.folder().join(&*file);
         *file = match kept.get(&path) {
             Some(name) => in_scene(&beside.join(name)),
             None => in_scene(&relative(&absolute(&path)?, &folder)),

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use glam::DVec3;
 use serde::Serialize;
-use tyndall_scene::{Density, Ray, SceneDescription, Volume, build, scene_hash};
+use tyndall_scene::{Density, Ray, SceneDescription, Volume};
+use tyndall_session::Input;
 
 use super::contents::Contents;
 use super::table::{bytes, number, triple};
-use crate::render::input::Input;
 
 /// What is told about a scene.
 #[derive(Debug, Serialize)]
@@ -52,21 +52,21 @@ struct OpticalThickness {
 impl SceneReport {
     /// Builds the scene and measures it.
     pub fn new(input: &Input) -> miette::Result<Self> {
-        let built = build(&input.description, &input.folder)?;
+        let built = input.build()?;
         let grid_of =
             |volume: &str| built.grids.iter().find(|(name, _)| name == volume).map(|(_, grid)| grid.clone());
         Ok(Self {
             format: "Tyndall scene",
-            scene_hash: scene_hash(&input.description, &input.folder)?.to_string(),
-            scene: input.description.clone(),
+            scene_hash: input.scene_hash()?.to_string(),
+            scene: input.description().clone(),
             volumes: built
                 .scene
                 .volumes
                 .iter()
                 .map(|volume| VolumeReport::new(volume, grid_of(&volume.name)))
                 .collect(),
-            contents: Contents::new(&input.description, &built.scene),
-            notes: input.notes.iter().cloned().chain(built.notes).collect(),
+            contents: Contents::new(input.description(), &built.scene),
+            notes: input.notes().iter().cloned().chain(built.notes).collect(),
         })
     }
 }
@@ -132,7 +132,7 @@ fn density_integral(volume: &Volume, ray: &Ray, end: f64) -> f64 {
 /// The scene file, followed by a paragraph for each volume; what is no TOML is a comment, so that the whole remains
 /// a scene file.
 pub fn text(input: &Input, report: &SceneReport) -> String {
-    let mut text = input.text.clone();
+    let mut text = input.to_toml();
     for volume in &report.volumes {
         let _ = writeln!(text, "\n# {}", volume.name);
         for (key, value) in rows(volume) {
@@ -178,9 +178,7 @@ fn rows(volume: &VolumeReport) -> Vec<(&'static str, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::imported::ImportArgs;
-    use crate::render::input::load;
-    use crate::volume_input::RawArgs;
+    use tyndall_session::InputOptions;
 
     #[test]
     fn the_optical_thickness_of_a_ball_is_that_of_its_chords() {
@@ -189,9 +187,7 @@ mod tests {
         let scene = "camera = { position = [0, 0, 9], target = [0, 0, 0] }\n[[volume]]\n\
                      sphere = { center = [1, 2, 3], radius = 2 }\nmu_t = 3\nalbedo = 1\n";
         std::fs::write(&path, scene).unwrap();
-        let report =
-            SceneReport::new(&load(Some(&path), &[], &RawArgs::default(), &ImportArgs::default()).unwrap())
-                .unwrap();
+        let report = SceneReport::new(&Input::open(&path, &InputOptions::default()).unwrap()).unwrap();
         let [volume] = &report.volumes[..] else { panic!("{:?}", report.volumes) };
         assert_eq!(volume.world_box, Some([[-1.0, 0.0, 1.0], [3.0, 4.0, 5.0]]));
         let OpticalThickness { mean, max } = volume.optical_thickness.as_ref().unwrap();

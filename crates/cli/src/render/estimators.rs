@@ -1,9 +1,6 @@
 //! `--distance` and `--transmittance`: the estimators of the reference integrator.
 
-use std::path::Path;
-
 use miette::miette;
-use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
 use tyndall_transport::{DistanceSampler, Estimators, TransmittanceEstimator};
 
@@ -29,30 +26,15 @@ impl EstimatorArgs {
         Estimators { distance: self.distance, transmittance: self.transmittance }
     }
 
-    /// The choice, if it can make a picture of `scene`, which is that of `input`.
-    pub fn choose(
-        &self,
-        integrator: Integrator,
-        input: Option<&Path>,
-        scene: &Scene,
-    ) -> miette::Result<Estimators> {
+    /// Refuses a choice for another integrator.
+    pub fn check(&self, integrator: Integrator) -> miette::Result<()> {
         if self.integrator().is_some_and(|needed| needed != integrator) {
             return Err(miette!(
                 "--distance and --transmittance belong to the reference integrator; leave out --integrator fast"
             ));
         }
-        let input = input.map_or("the built-in scene".into(), |path| path.display().to_string());
-        self.chosen().validate(scene).map_err(|reason| miette!("{input}: {reason}"))?;
-        Ok(self.chosen())
+        Ok(())
     }
-}
-
-/// The choice as it is kept with the picture: samples of different estimators are not merged, as their errors differ.
-pub fn as_options(estimators: Estimators) -> String {
-    let distance = estimators.distance.map(|sampler| format!(" distance={}", sampler.name()));
-    let transmittance =
-        estimators.transmittance.map(|estimator| format!(" transmittance={}", estimator.name()));
-    [distance, transmittance].into_iter().flatten().collect()
 }
 
 fn parse_distance(text: &str) -> Result<DistanceSampler, String> {

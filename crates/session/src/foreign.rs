@@ -2,29 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
-use miette::{IntoDiagnostic, WrapErr, miette};
 use tempfile::TempDir;
 use tyndall_import::{Imported, Note, NoteKind, Sidecar, import_mitsuba, import_pbrt};
 
-/// Options for scenes of other renderers
-#[derive(Debug, Clone, Default, clap::Args)]
-pub struct ImportArgs {
-    /// Refuse a .pbrt or .xml scene of which something is not supported
-    #[arg(long)]
-    strict: bool,
-    /// What `$NAME` stands for in a Mitsuba scene; may be given several times
-    #[arg(short = 'D', long, value_name = "NAME=VALUE", value_parser = parse_define)]
-    define: Vec<(String, String)>,
+use crate::SessionError;
+
+/// How scenes of other renderers are read.
+#[derive(Debug, Clone, Default)]
+pub struct ImportOptions {
+    /// Refuse a scene of which something is not supported.
+    pub strict: bool,
+    /// What `$NAME` stands for in a Mitsuba scene.
+    pub define: Vec<(String, String)>,
 }
 
-impl ImportArgs {
+impl ImportOptions {
     /// Refuses the options for `path`, which is no scene of another renderer.
-    pub fn refuse(&self, path: &Path) -> miette::Result<()> {
+    ///
+    /// # Errors
+    /// If any is given.
+    pub fn refuse(&self, path: &Path) -> Result<(), SessionError> {
         let option = if self.strict { "--strict" } else { "--define" };
         if self.strict || !self.define.is_empty() {
-            return Err(miette!(
-                "{}: {option} is for scenes of other renderers (.pbrt .xml); leave it out",
-                path.display()
+            return Err(SessionError::refuse_file(
+                path,
+                format!("{option} is for scenes of other renderers (.pbrt .xml); leave it out"),
             ));
         }
         Ok(())
@@ -52,15 +54,8 @@ pub fn is_foreign(path: &Path) -> bool {
     dialect(path).is_some()
 }
 
-/// A scene of another renderer, and a folder with the files that it wrote out; the folder goes when this is dropped.
-pub struct Foreign {
-    /// The scene and what is to be known of it.
-    pub imported: Imported,
-    /// Its files.
-    pub files: WrittenFiles,
-}
-
-/// Files that last as long as this.
+/// Files that a scene of another renderer wrote out, and which its description names; they last as long as this.
+#[derive(Debug)]
 pub struct WrittenFiles(TempDir);
 
 impl WrittenFiles {
@@ -77,39 +72,33 @@ impl WrittenFiles {
 ///
 /// # Errors
 /// If it cannot be read, or if something of it is not supported and the options are strict.
-pub fn import(path: &Path, args: &ImportArgs) -> miette::Result<Foreign> {
-    let folder = tempfile::Builder::new().prefix("tyndall-").tempdir();
-    let folder = folder.into_diagnostic().wrap_err("no temporary folder can be made")?;
+pub(crate) fn import(path: &Path, options: &ImportOptions) -> Result<(Imported, WrittenFiles), SessionError> {
+    let folder = tempfile::Builder::new()
+        .prefix("tyndall-")
+        .tempdir()
+        .map_err(|error| SessionError::refuse("no temporary folder can be made", error.to_string()))?;
     let sidecar = Sidecar::new(folder.path());
     let imported = match dialect(path) {
-        Some(Dialect::Mitsuba) => import_mitsuba(path, &sidecar, &args.define),
-        _ if !args.define.is_empty() => {
-            return Err(miette!("{}: --define is for Mitsuba scenes (.xml); leave it out", path.display()));
+        Some(Dialect::Mitsuba) => import_mitsuba(path, &sidecar, &options.define),
+        _ if !options.define.is_empty() => {
+            return Err(SessionError::refuse_file(
+                path,
+                "--define is for Mitsuba scenes (.xml); leave it out",
+            ));
         }
         _ => import_pbrt(path, &sidecar),
-    };
-    let imported = imported.map_err(|error| miette!("{error}"))?;
-    if args.strict {
+    }?;
+    if options.strict {
         refuse_unsupported(&imported.notes)?;
     }
-    Ok(Foreign { imported, files: WrittenFiles(folder) })
+    Ok((imported, WrittenFiles(folder)))
 }
 
-/// All that is not supported of a scene, one line each.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("{}", .0.join("; "))]
-pub struct Unsupported(pub Vec<String>);
-
-fn refuse_unsupported(notes: &[Note]) -> Result<(), Unsupported> {
+fn refuse_unsupported(notes: &[Note]) -> Result<(), SessionError> {
     let is_unsupported = |note: &&Note| note.kind == NoteKind::Unsupported;
     let lines: Vec<String> =
         notes.iter().filter(is_unsupported).map(|note| format!("{note} (--strict)")).collect();
-    if lines.is_empty() { Ok(()) } else { Err(Unsupported(lines)) }
-}
-
-fn parse_define(text: &str) -> Result<(String, String), String> {
-    let pair = text.split_once('=').filter(|(name, _)| !name.is_empty());
-    pair.map(|(name, value)| (name.to_owned(), value.to_owned())).ok_or("write NAME=VALUE".into())
+    if lines.is_empty() { Ok(()) } else { Err(SessionError::Unsupported(lines)) }
 }
 
 #[cfg(test)]
@@ -129,12 +118,5 @@ mod tests {
         ] {
             assert_eq!(dialect(Path::new(name)), expected, "{name}");
         }
-    }
-
-    #[test]
-    fn a_definition_is_a_name_and_a_value_that_may_be_empty() {
-        assert_eq!(parse_define("spp=4=4"), Ok(("spp".into(), "4=4".into())));
-        assert_eq!(parse_define("spp="), Ok(("spp".into(), String::new())));
-        assert!(parse_define("=4").is_err() && parse_define("spp").is_err());
     }
 }
