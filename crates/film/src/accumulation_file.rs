@@ -90,6 +90,24 @@ impl Accumulation {
         Self::decode(&bytes).map_err(|what| FileError::unusable(path, what))
     }
 
+    /// The content of an `.acc` file.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub fn to_bytes(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.encode(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// What the content of an `.acc` file holds; `name` stands for it in messages.
+    ///
+    /// # Errors
+    /// If it is none, or damaged.
+    pub fn from_bytes(bytes: &[u8], name: &Path) -> Result<Self, FileError> {
+        Self::decode(bytes).map_err(|what| FileError::unusable(name, what))
+    }
+
     /// Adds the samples of `other`. The paths only serve to name both in an error; nothing changes on error.
     pub fn merge(&mut self, path: &Path, other: &Self, other_path: &Path) -> Result<(), FileError> {
         let refuse = |what: String| FileError::unusable(other_path, what);

@@ -32,7 +32,7 @@ pub use estimates::{Channel, Estimate, LUMINANCE};
 pub use exr_file::{write_bands_exr, write_exr};
 pub use film::{Film, FilmTile, MAX_PIXELS, MergeError, Rect, SizeError, TILE_EDGE};
 pub use metadata::{Crop, ImageMetadata};
-pub use png_file::write_png;
+pub use png_file::{png_bytes, write_png};
 pub use ranges::{RangeError, SampleRanges};
 pub use sample::{Layers, Sample};
 pub use summary::Summary;

@@ -5,6 +5,7 @@
 //! the mean 255 v. Black and white stay exact. The picture is opaque: alpha, with the shadows on catchers, is for
 //! compositors and only in EXR files.
 
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic_write::write_atomically;
@@ -14,16 +15,25 @@ use crate::tone_map::{srgb_signal, tone_map};
 
 /// Writes the mean radiance of a film.
 pub fn write_png(path: &Path, film: &Film, exposure: f32) -> Result<(), FileError> {
+    let bytes = png_bytes(film, exposure).map_err(|error| FileError::io(path, error))?;
+    write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// The content of the file that [`write_png`] writes.
+///
+/// # Errors
+/// If the picture is too large for a PNG.
+pub fn png_bytes(film: &Film, exposure: f32) -> io::Result<Vec<u8>> {
     let pixels = encode(&film.mean_image(), film.width() as usize, exposure);
-    write_atomically(path, |file| {
-        let mut encoder = png::Encoder::new(file, film.width(), film.height());
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&pixels)?;
-        Ok(writer.finish()?)
-    })
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, film.width(), film.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixels)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// 8-bit sRGB, three bytes a pixel.

@@ -23,3 +23,19 @@ pub(crate) fn wrong(message: impl Display) -> PyErr {
 pub(crate) fn file(message: impl Display) -> PyErr {
     classes::FileError::new_err(message.to_string())
 }
+
+/// What is wrong with a volume file.
+pub(crate) fn of_volume(error: tyndall_volumes::ReadError) -> PyErr {
+    match &error {
+        tyndall_volumes::ReadError::Io { .. } => file(error),
+        _ => wrong(error),
+    }
+}
+
+/// Why a volume cannot be written.
+pub(crate) fn of_writing(error: tyndall_volumes::WriteError) -> PyErr {
+    match &error {
+        tyndall_volumes::WriteError::Io { .. } => file(error),
+        tyndall_volumes::WriteError::Unwritable { .. } => wrong(error),
+    }
+}

@@ -3,13 +3,17 @@
 //! One file an idea; this one only lists what Python sees. What is written in Python, such as progress bars, xarray and the
 //! examples, stands in `python/tyndall/`.
 
-mod arrays;
+mod array;
 mod effort;
 mod error;
 mod interrupt;
 mod mie;
 mod phase;
 mod slab;
+mod slices;
+mod tree;
+mod units;
+mod volume;
 
 use pyo3::prelude::pymodule;
 
@@ -24,6 +28,8 @@ mod _tyndall {
     use crate::phase::PhaseFunction;
     #[pymodule_export]
     use crate::slab::slab;
+    #[pymodule_export]
+    use crate::volume::Volume;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

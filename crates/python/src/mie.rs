@@ -5,7 +5,7 @@ use pyo3::prelude::{Bound, PyResult, Python, pyfunction};
 use tyndall_optics::mie::Sphere;
 use tyndall_optics::{Material, RefractiveIndex, Substance};
 
-use crate::arrays::numbers;
+use crate::slices::numbers;
 use crate::error::wrong;
 use crate::interrupt::cancellable;
 

@@ -7,7 +7,7 @@ use pyo3::prelude::{Bound, PyResult, Python, pyclass, pymethods};
 use tyndall_lanes::Random;
 use tyndall_scene::{MieSpheres, PhaseCurve};
 
-use crate::arrays::{numbers, pairs, vectors};
+use crate::slices::{numbers, pairs, vectors};
 use crate::error::wrong;
 
 /// A phase function in one line, for light that arrives in one direction.

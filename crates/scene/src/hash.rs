@@ -63,7 +63,7 @@ pub fn scene_hash_with(description: &SceneDescription, files: &SceneFiles) -> Re
         *file = match known.get(&path) {
             Some(hash) => hash.clone(),
             None => {
-                let hash = content_hash(&path)?;
+                let hash = content_hash(&path)?.to_string();
                 known.insert(path, hash.clone());
                 hash
             }
@@ -72,14 +72,18 @@ pub fn scene_hash_with(description: &SceneDescription, files: &SceneFiles) -> Re
     Ok(SceneHash::of(Sha256::new().chain_update(canonical.to_toml())))
 }
 
-fn content_hash(path: &Path) -> Result<String, SceneError> {
+/// Hash of a file's bytes.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn content_hash(path: &Path) -> Result<SceneHash, SceneError> {
     let refuse = |error: std::io::Error| SceneError::file(path, error.to_string());
     let mut file = std::fs::File::open(path).map_err(refuse)?;
     let mut hasher = Sha256::new();
     let mut block = vec![0; 1 << 20];
     loop {
         match file.read(&mut block).map_err(refuse)? {
-            0 => return Ok(SceneHash::of(hasher).to_string()),
+            0 => return Ok(SceneHash::of(hasher)),
             length => hasher.update(&block[..length]),
         }
     }

@@ -37,7 +37,7 @@ pub use self::description::SceneDescription;
 pub use self::error::{Problem, SceneError};
 pub use self::exponential::Exponential;
 pub use self::fields::{Field, Fields, TemperatureField};
-pub use self::hash::{SceneHash, scene_hash, scene_hash_with};
+pub use self::hash::{SceneHash, content_hash, scene_hash, scene_hash_with};
 pub use self::light::{Light, LightSample};
 pub use self::medium::{ChromaticMedium, Density, Medium, Volume};
 pub use self::mie::{MieSpheres, mie_spheres};

@@ -9,7 +9,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DAffine3;
 use sha2::{Digest, Sha256};
-use tyndall_volumes::{Grid, GridValues, Tree};
+use tyndall_volumes::{Grid, GridValues, LEAF_VOXELS, Tree};
 
 use crate::hash::SceneHash;
 
@@ -53,6 +53,11 @@ impl MemoryGrid {
         &self.grid
     }
 
+    /// Whether both are clones of one, at one scale.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.grid, &other.grid) && self.scale == other.scale
+    }
+
     /// From the grid's own world space, to which its `index_to_world` leads, to that of the scene.
     pub fn place(&self) -> DAffine3 {
         DAffine3::from_scale(glam::DVec3::splat(self.scale))
@@ -89,7 +94,7 @@ fn hash_of_grid(grid: &Grid) -> Sha256 {
     hasher
 }
 
-/// Leaves and tiles in the order in which they stand: readers of one version always give the same.
+/// By place, as leaves and tiles stand in no promised order.
 fn hash_tree<T: Copy, const N: usize>(
     hasher: &mut Sha256,
     kind: u8,
@@ -98,19 +103,23 @@ fn hash_tree<T: Copy, const N: usize>(
 ) {
     hasher.update([kind]);
     hasher.update(bytes(tree.background));
-    for tile in &tree.tiles {
+    let mut tiles: Vec<_> = tree.tiles.iter().collect();
+    tiles.sort_unstable_by_key(|tile| (tile.origin, tile.log2_edge));
+    for tile in tiles {
         tile.origin.iter().for_each(|index| hasher.update(index.to_le_bytes()));
         hasher.update([tile.log2_edge as u8, u8::from(tile.active)]);
         hasher.update(bytes(tile.value));
     }
     hasher.update([u8::MAX]);
-    for leaf in &tree.leaves {
+    let mut order: Vec<usize> = (0..tree.leaves.len()).collect();
+    order.sort_unstable_by_key(|&number| tree.leaves[number].origin);
+    let mut block = Vec::with_capacity(N * LEAF_VOXELS);
+    for number in order {
+        let leaf = &tree.leaves[number];
         leaf.origin.iter().for_each(|index| hasher.update(index.to_le_bytes()));
         leaf.active.iter().for_each(|word| hasher.update(word.to_le_bytes()));
-    }
-    let mut block = Vec::with_capacity(N * tyndall_volumes::LEAF_VOXELS);
-    for values in tree.leaf_values.chunks(tyndall_volumes::LEAF_VOXELS) {
         block.clear();
+        let values = &tree.leaf_values[number * LEAF_VOXELS..][..LEAF_VOXELS];
         values.iter().for_each(|value| block.extend_from_slice(&bytes(*value)));
         hasher.update(&block);
     }

@@ -6,7 +6,7 @@ use tyndall_optics::PhaseFunction;
 use tyndall_optics::mie::MieCache;
 use tyndall_scene::description::{PhaseDescription, phase_spec};
 use tyndall_scene::{
-    Medium, SceneDescription, SceneDocument, SceneError, build_with, mie_spheres, scene_hash,
+    Medium, SceneDescription, SceneDocument, SceneError, SceneFiles, build_with, mie_spheres, scene_hash,
 };
 
 fn parse(line: &str) -> PhaseDescription {

@@ -1,12 +1,17 @@
-//! Grids from arrays that are in memory already, in whatever order and type they are.
+//! Grids from arrays that are in memory already, in whatever order and type they are, and arrays from grids.
 //!
 //! As a reader of files would make them: every voxel is active, those outside are inactive and 0, and a full leaf of one
 //! value becomes a tile. The array is asked voxel by voxel, so that it need not be copied into another order first.
 
+use std::io::{self, Write};
+
 use glam::DAffine3;
 
 use crate::dense::{EDGE, sound_shape};
+use crate::dense_box::DenseBox;
+use crate::element::AxisOrder;
 use crate::fault::Fault;
+use crate::float_tree::{FloatTree, Voxel};
 use crate::{Grid, GridClass, GridValues, LEAF_VOXELS, Leaf, Tile, Tree};
 
 /// Why an array is no volume, as one line with the mend.
@@ -73,7 +78,37 @@ where
     tree.leaf_values.extend_from_slice(&values);
 }
 
+/// The box around the active voxels of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DenseArray {
+    /// Index coordinates of its first voxel.
+    pub origin: [i32; 3],
+    /// Voxels along x, y and z.
+    pub shape: [usize; 3],
+    /// Numbers a voxel: 1, or 3 of vectors.
+    pub channels: usize,
+    /// The numbers, those of a voxel next to each other and z changing fastest; inactive voxels have the value that they
+    /// have in the tree.
+    pub values: Vec<f32>,
+}
+
 impl Grid {
+    /// The box around the active voxels as an array, doubles and integers rounded to floats.
+    ///
+    /// # Errors
+    /// If no voxel is active, or the array would be larger than 4 GiB.
+    pub fn to_array(&self) -> Result<DenseArray, ArrayError> {
+        let error = |fault| match fault {
+            Fault::Damaged(what) | Fault::Unsupported(what) => ArrayError(what),
+            Fault::Io(error) => ArrayError(error.to_string()),
+        };
+        match FloatTree::of(&self.values) {
+            FloatTree::Scalar(tree) => array_of(&tree),
+            FloatTree::Vector(tree) => array_of(tree),
+        }
+        .map_err(error)
+    }
+
     /// A grid that no file has: a name, where it is, and values.
     pub fn in_memory(name: &str, index_to_world: DAffine3, values: GridValues) -> Self {
         Self {
@@ -85,6 +120,28 @@ impl Grid {
             metadata: Vec::new(),
             values,
         }
+    }
+}
+
+fn array_of<T: Voxel>(tree: &Tree<T>) -> Result<DenseArray, Fault> {
+    let dense = DenseBox::of(tree)?;
+    let mut sink = Floats(Vec::new());
+    dense.write(tree, AxisOrder::ZFastest, &mut sink)?;
+    Ok(DenseArray { origin: dense.min, shape: dense.shape, channels: T::CHANNELS, values: sink.0 })
+}
+
+/// Takes the bytes of whole floats.
+struct Floats(Vec<f32>);
+
+impl Write for Floats {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let (floats, _) = bytes.as_chunks();
+        self.0.extend(floats.iter().map(|float| f32::from_le_bytes(*float)));
+        Ok(floats.len() * size_of::<f32>())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 
@@ -118,6 +175,16 @@ mod tests {
             assert_eq!(leaf.active, read.leaves[same].active);
             assert_eq!(values, &read.leaf_values[same * LEAF_VOXELS..][..LEAF_VOXELS]);
         }
+    }
+
+    #[test]
+    fn a_grid_gives_back_the_array_it_was_made_of() {
+        let number = |[x, y, z]: [usize; 3]| [(x * 100 + y * 10 + z) as f32, 0.5, -1.0];
+        let tree = tree_of_array([3, 9, 2], number).unwrap();
+        let array = Grid::in_memory("v", DAffine3::IDENTITY, GridValues::Vec3(tree)).to_array().unwrap();
+        assert_eq!((array.origin, array.shape, array.channels), ([0; 3], [3, 9, 2], 3));
+        assert_eq!(array.values[(2 * 9 + 7) * 2 * 3..][..3], number([2, 7, 0]));
+        assert_eq!(array.values.len(), 3 * 9 * 2 * 3);
     }
 
     #[test]

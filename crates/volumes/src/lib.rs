@@ -42,7 +42,7 @@ pub mod vdb;
 mod vol;
 mod write;
 
-pub use array::{ArrayError, tree_of_array};
+pub use array::{ArrayError, DenseArray, tree_of_array};
 pub use bricks::{BrickGrid, Filter, Storage};
 pub use element::{AxisOrder, ByteOrder, Element};
 pub use error::{ReadError, WriteError};

@@ -7,6 +7,7 @@
 mod automatic;
 mod call;
 mod camera;
+mod dimension;
 mod emission;
 mod files;
 mod film;
@@ -33,6 +34,7 @@ mod volume;
 
 pub use automatic::{AutomaticScene, Glow, VolumeSummary};
 pub use camera::{CameraDescription, Projection};
+pub use dimension::{Dimension, dimension};
 pub use emission::{AlbedoGridDescription, EmissionGridDescription, TemperatureDescription};
 pub use film::{ColourMode, FilmDescription, FilmOutput, Integrator, Layer, RenderDescription, Sampler};
 pub use lights::{

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::conformance;
 use super::schema::json_schema;
-use super::tree::{Entry, Node, Place, Value};
+use super::tree::{Entry, Node, Place, ROOT, Value};
 use crate::SceneDescription;
 use crate::error::{Problem, SceneError};
 
@@ -64,6 +64,12 @@ impl SceneDocument {
         Ok(Self { folder: PathBuf::new(), root })
     }
 
+    /// A scene that a program hands over. Messages show the path of keys, such as `volume.0.mu_t`, where those about a text
+    /// show line and column.
+    pub fn from_table(table: toml::Table) -> Self {
+        Self { folder: PathBuf::new(), root: Node::from_tree(toml::Value::Table(table), ROOT) }
+    }
+
     /// The folder that the scene's file names are relative to.
     pub fn folder(&self) -> &Path {
         &self.folder
@@ -80,11 +86,8 @@ impl SceneDocument {
         let Some((path, value)) = assignment.split_once('=') else {
             return Err(place.problem("lacks `=`: write path.to.key=value").into());
         };
-        let keys: Vec<&str> = path.split('.').map(str::trim).collect();
-        // Deeper than any scene; also keeps walks over the tree from running out of stack.
-        if keys.iter().any(|key| key.is_empty()) || keys.len() > 16 {
-            return Err(place.problem("write path.to.key=value, such as camera.vertical_fov=30").into());
-        }
+        let keys = keys_of(path)
+            .ok_or_else(|| place.problem("write path.to.key=value, such as camera.vertical_fov=30"))?;
         let mut problems = Vec::new();
         let node = match DeValue::parse(value.trim()) {
             Ok(value) => Node::from_value(value.into_inner(), place.clone(), &mut problems),
@@ -92,6 +95,16 @@ impl SceneDocument {
         };
         SceneError::unless_empty(problems)?;
         *slot(&mut self.root, &keys, &place)? = node;
+        Ok(())
+    }
+
+    /// Changes one value as [`set`](Self::set) does: `path` such as `volume.0.mu_t`.
+    pub fn set_value(&mut self, path: &str, value: toml::Value) -> Result<(), SceneError> {
+        let place = Place::in_tree(path);
+        let keys = keys_of(path).ok_or_else(|| {
+            place.problem("write the keys that lead to the value, such as camera.vertical_fov")
+        })?;
+        *slot(&mut self.root, &keys, &place)? = Node::from_tree(value, path);
         Ok(())
     }
 
@@ -113,6 +126,12 @@ impl SceneDocument {
         SceneError::unless_empty(problems)?;
         Ok(description)
     }
+}
+
+/// The keys of a path. Paths deeper than any scene are none; walks over the tree must not run out of stack.
+fn keys_of(path: &str) -> Option<Vec<&str>> {
+    let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+    (keys.iter().all(|key| !key.is_empty()) && keys.len() <= 16).then_some(keys)
 }
 
 /// The value at `keys`, made if it is not there.
@@ -154,4 +173,39 @@ fn slot<'a>(node: &'a mut Node, keys: &[&str], place: &Place) -> Result<&'a mut 
 fn syntax_problem(error: &toml::de::Error, place: &Place) -> Problem {
     let message = error.message().lines().collect::<Vec<_>>().join(", ");
     Problem::at(&place.text, error.span().unwrap_or(0..0), format!("not TOML: {message}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(text: &str) -> String {
+        SceneDocument::from_table(toml::from_str(text).unwrap()).description().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_tree_is_the_same_scene_as_its_text_and_its_problems_name_keys() {
+        let text = "camera = { position = [0, 0, 5], target = [0, 0, 0] }\nlight = [{ type = \"sun\", direction = [0, 1, 0], irradiance = 1 }]\n";
+        let tree = SceneDocument::from_table(toml::from_str(text).unwrap()).description().unwrap();
+        assert_eq!(tree, SceneDocument::parse("text", text).unwrap().description().unwrap());
+        assert_eq!(
+            problem(&text.replace("irradiance", "irradance")),
+            "light.0.irradance: unknown key `irradance` in [[light]] of type `sun`, did you mean `irradiance`?"
+        );
+        assert!(
+            problem(&text.replace("5]", "\"x\"]")).starts_with("camera.position: `position[2]` must be a")
+        );
+        assert!(problem("").starts_with("scene: the scene lacks [camera]"));
+    }
+
+    #[test]
+    fn values_are_set_as_options_set_them() {
+        let text = "camera = { position = [0, 0, 5], target = [0, 0, 0] }";
+        let mut by_option = SceneDocument::parse("text", text).unwrap();
+        let mut by_value = by_option.clone();
+        by_option.set("volume.0.sphere.radius=2").unwrap();
+        by_value.set_value("volume.0.sphere.radius", 2.into()).unwrap();
+        assert_eq!(by_value.root.to_toml(), by_option.root.to_toml());
+        assert!(by_value.set_value("camera..x", 2.into()).is_err());
+    }
 }

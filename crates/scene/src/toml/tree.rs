@@ -1,10 +1,15 @@
 //! TOML values that know where they stand, in the scene file or in an option.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use miette::NamedSource;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Problem, SceneText};
+
+/// What messages call a tree as a whole.
+pub(crate) const ROOT: &str = "scene";
 
 /// Bytes of a text.
 #[derive(Debug, Clone)]
@@ -22,6 +27,11 @@ impl Place {
         } else {
             Problem::at(&self.text, self.span.clone(), message)
         }
+    }
+
+    /// A place in a tree that no text is behind: messages show the path of keys.
+    pub(crate) fn in_tree(path: &str) -> Self {
+        Self { text: Arc::new(NamedSource::new(path, Arc::from(""))), is_option: true, span: 0..0 }
     }
 
     fn elsewhere(&self, span: Range<usize>) -> Self {
@@ -92,6 +102,46 @@ impl Node {
                     .collect(),
             ),
             DeValue::Table(table) => entries(table, &place, problems),
+        };
+        Self { value, place }
+    }
+
+    /// The tree of a value at a path of keys, such as `volume.0.mu_t`.
+    pub(crate) fn from_tree(value: toml::Value, path: &str) -> Self {
+        let place = Place::in_tree(path);
+        let below = |key: &dyn std::fmt::Display| match path {
+            ROOT => key.to_string(),
+            path => format!("{path}.{key}"),
+        };
+        let value = match value {
+            toml::Value::String(text) => Value::String(text),
+            toml::Value::Integer(integer) => Value::Integer(integer),
+            toml::Value::Float(float) => Value::Float(float),
+            toml::Value::Boolean(flag) => Value::Boolean(flag),
+            toml::Value::Datetime(_) => Value::Datetime,
+            toml::Value::Array(items) => Value::Array(
+                items
+                    .into_iter()
+                    .enumerate()
+                    .map(|(index, item)| match item {
+                        toml::Value::Table(_) | toml::Value::Array(_) => {
+                            Self::from_tree(item, &below(&index))
+                        }
+                        // Meshes have very many numbers.
+                        item => Self { place: place.clone(), ..Self::from_tree(item, ROOT) },
+                    })
+                    .collect(),
+            ),
+            toml::Value::Table(table) => Value::Table(
+                table
+                    .into_iter()
+                    .map(|(key, value)| {
+                        let path = below(&key);
+                        let key_place = Place::in_tree(&path);
+                        Entry { key_place, key, node: Self::from_tree(value, &path) }
+                    })
+                    .collect(),
+            ),
         };
         Self { value, place }
     }
