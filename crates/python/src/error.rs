@@ -6,6 +6,7 @@
 use std::fmt::Display;
 
 use pyo3::PyErr;
+use tyndall_session::SessionError;
 
 mod classes {
     use pyo3::import_exception;
@@ -37,5 +38,23 @@ pub(crate) fn of_writing(error: tyndall_volumes::WriteError) -> PyErr {
     match &error {
         tyndall_volumes::WriteError::Io { .. } => file(error),
         tyndall_volumes::WriteError::Unwritable { .. } => wrong(error),
+    }
+}
+
+/// What is wrong with a file of sums or a picture.
+pub(crate) fn of_picture(error: tyndall_film::FileError) -> PyErr {
+    match &error {
+        tyndall_film::FileError::Io { .. } => file(error),
+        tyndall_film::FileError::Unusable { .. } => wrong(error),
+    }
+}
+
+/// Why something cannot be opened, rendered or written.
+pub(crate) fn of_session(error: SessionError) -> PyErr {
+    match error {
+        SessionError::Volume(error) => of_volume(error),
+        SessionError::File(error) => of_picture(error),
+        SessionError::NotFound(_) => file(error),
+        error => wrong(error),
     }
 }

@@ -5,9 +5,9 @@ use pyo3::prelude::{Bound, PyResult, Python, pyfunction};
 use tyndall_optics::mie::Sphere;
 use tyndall_optics::{Material, RefractiveIndex, Substance};
 
-use crate::slices::numbers;
 use crate::error::wrong;
 use crate::interrupt::cancellable;
+use crate::slices::numbers;
 
 /// One-dimensional arrays of efficiencies.
 type Efficiencies<'py> = [Bound<'py, PyArray1<f64>>; 5];

@@ -7,8 +7,8 @@ use pyo3::prelude::{Bound, PyResult, Python, pyclass, pymethods};
 use tyndall_lanes::Random;
 use tyndall_scene::{MieSpheres, PhaseCurve};
 
-use crate::slices::{numbers, pairs, vectors};
 use crate::error::wrong;
+use crate::slices::{numbers, pairs, vectors};
 
 /// A phase function in one line, for light that arrives in one direction.
 #[pyclass(frozen, module = "tyndall._tyndall")]

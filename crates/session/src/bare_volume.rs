@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use tyndall_scene::description::{Glow, VolumeSummary};
-use tyndall_scene::{SceneDescription, choose_density};
+use tyndall_scene::{MemoryGrid, SceneDescription, choose_density};
 use tyndall_volumes::{Grid, GridValues};
 
 use crate::SessionError;
@@ -40,8 +40,31 @@ pub(crate) fn make_up(path: &Path, raw: Option<RawVolume>) -> Result<AutomaticIn
     if names.len() > 1 {
         notes.push(format!("of the grids {} `{}` is rendered", names.join(", "), grid.name));
     }
+    make_up_of(path, &grid, DAffine3::IDENTITY, glow, raw, notes)
+}
+
+/// Makes up a scene for a grid in memory that stands for the file `name`.
+///
+/// # Errors
+/// If it has nothing to be seen.
+pub(crate) fn make_up_of_grid(name: &str, memory: &MemoryGrid) -> Result<AutomaticInput, SessionError> {
+    let path = Path::new(name);
+    if matches!(memory.grid().values, GridValues::Vec3(_)) {
+        return Err(SessionError::refuse_file(path, "holds vectors; give a volume with a density"));
+    }
+    make_up_of(path, memory.grid(), memory.place(), None, None, Vec::new())
+}
+
+fn make_up_of(
+    path: &Path,
+    grid: &Grid,
+    place: DAffine3,
+    glow: Option<Glow>,
+    raw: Option<RawVolume>,
+    mut notes: Vec<String>,
+) -> Result<AutomaticInput, SessionError> {
     let glow = glow.filter(|_| grid.name.to_ascii_lowercase().contains("density"));
-    let Some(summary) = summary(&grid, glow) else {
+    let Some(summary) = summary(grid, place, glow) else {
         return Err(SessionError::refuse_file(
             path,
             format!(
@@ -80,10 +103,10 @@ fn glow(grids: &[Grid]) -> Option<Glow> {
 }
 
 /// What the made-up scene depends on; `None` if no voxel is active.
-fn summary(grid: &Grid, glow: Option<Glow>) -> Option<VolumeSummary> {
+fn summary(grid: &Grid, place: DAffine3, glow: Option<Glow>) -> Option<VolumeSummary> {
     let statistics = grid.values.statistics();
     let [low, high] = statistics.active_bbox?;
-    let to_world = grid.index_to_world;
+    let to_world = place * grid.index_to_world;
     let corner = |i: usize| {
         let face = |axis: usize| match i >> axis & 1 {
             0 => f64::from(low[axis]) - 0.5,

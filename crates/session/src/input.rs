@@ -1,10 +1,15 @@
 //! Whatever can be rendered, as a description: the built-in scene, a scene file, one of another renderer, a bare volume with
 //! a scene made up for it, or a scene that a program hands over.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tyndall_scene::{BuiltScene, SceneDescription, SceneDocument, SceneHash, build, scene_hash};
+use tyndall_optics::mie::MieCache;
+use tyndall_scene::{
+    BuiltScene, MemoryGrid, SceneDescription, SceneDocument, SceneFiles, SceneHash, build_with,
+    scene_hash_with,
+};
 
 use crate::bare_volume::AutomaticInput;
 use crate::foreign::{self, ImportOptions, WrittenFiles};
@@ -31,7 +36,7 @@ pub struct Input {
     description: SceneDescription,
     /// The scene file with its comments, as long as it says the same as the description.
     text: Option<String>,
-    folder: PathBuf,
+    files: SceneFiles,
     notes: Vec<String>,
     written: Option<Arc<WrittenFiles>>,
     name: String,
@@ -109,7 +114,7 @@ impl Input {
         Self {
             description,
             text: None,
-            folder: folder.into(),
+            files: SceneFiles { folder: folder.into(), grids: BTreeMap::new() },
             notes: Vec::new(),
             written: None,
             name: name.to_owned(),
@@ -155,6 +160,18 @@ impl Input {
         Ok(input)
     }
 
+    /// The scene of a bare grid in memory, made up from its data; `name` stands for its file.
+    ///
+    /// # Errors
+    /// If the grid has nothing to be seen.
+    pub fn from_grid(name: &str, grid: MemoryGrid) -> Result<Self, SessionError> {
+        let AutomaticInput { text, notes } = bare_volume::make_up_of_grid(name, &grid)?;
+        let mut input = Self::from_text("the scene made up for the volume", &text, "", &[])?;
+        input.notes = notes;
+        input.name = name.to_owned();
+        Ok(input.with_grids(BTreeMap::from([(name.to_owned(), grid)])))
+    }
+
     /// The scene, with all overrides applied.
     pub fn description(&self) -> &SceneDescription {
         &self.description
@@ -173,7 +190,13 @@ impl Input {
 
     /// What its file names are relative to.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        &self.files.folder
+    }
+
+    /// The same, with grids in memory that stand for files of these names.
+    pub fn with_grids(mut self, grids: BTreeMap<String, MemoryGrid>) -> Self {
+        self.files.grids = grids;
+        self
     }
 
     /// What was guessed, and what is not as in the renderer that the scene is for.
@@ -201,7 +224,15 @@ impl Input {
     /// # Errors
     /// If a file that it names cannot be read or used.
     pub fn build(&self) -> Result<BuiltScene, SessionError> {
-        Ok(build(&self.description, &self.folder)?)
+        Ok(build_with(&self.description, &self.files, &MieCache::from_environment())?)
+    }
+
+    /// The scene ready to trace with its hash, for as many [jobs](crate::Job) as are wanted.
+    ///
+    /// # Errors
+    /// If a file that it names cannot be read or used.
+    pub fn ready(&self) -> Result<ReadyScene, SessionError> {
+        Ok(ReadyScene { built: self.build()?, hash: self.scene_hash()? })
     }
 
     /// The hash of all that decides the expected picture, files included.
@@ -209,8 +240,17 @@ impl Input {
     /// # Errors
     /// If a file that it names cannot be read.
     pub fn scene_hash(&self) -> Result<SceneHash, SessionError> {
-        Ok(scene_hash(&self.description, &self.folder)?)
+        Ok(scene_hash_with(&self.description, &self.files)?)
     }
+}
+
+/// A scene ready to trace, and which it is.
+#[derive(Debug, Clone)]
+pub struct ReadyScene {
+    /// The scene.
+    pub built: BuiltScene,
+    /// Its hash.
+    pub hash: SceneHash,
 }
 
 fn parent_folder(path: &Path) -> PathBuf {

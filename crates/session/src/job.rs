@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-use tyndall_film::Accumulation;
+use tyndall_film::{Accumulation, Film};
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Observer, Scene, observers};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer};
 
 use crate::clock::Clock;
+use crate::input::ReadyScene;
 use crate::picture::{are_alike, empty_films, empty_pictures};
 use crate::{Input, Plan, SessionError};
 
@@ -46,7 +47,27 @@ impl Job {
         let observers = observers(description);
         // First of all, as they may be too large for this machine.
         let films = empty_films(description, &observers)?;
-        let built = input.build()?;
+        Self::with_films(input, &input.ready()?, films, options)
+    }
+
+    /// The same of a scene that is ready already: that of `input`, as it is now or was before a change of its `render` table.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_ready(input: &Input, ready: &ReadyScene, options: &JobOptions) -> Result<Self, SessionError> {
+        let films = empty_films(input.description(), &observers(input.description()))?;
+        Self::with_films(input, ready, films, options)
+    }
+
+    fn with_films(
+        input: &Input,
+        ready: &ReadyScene,
+        films: Vec<Film>,
+        options: &JobOptions,
+    ) -> Result<Self, SessionError> {
+        let ReadyScene { built, hash } = ready;
+        let description = input.description();
+        let observers = observers(description);
         let estimators = options.estimators;
         let integrator = description.render.integrator;
         if estimators != Estimators::default() && integrator != Integrator::Reference {
@@ -62,7 +83,7 @@ impl Job {
         notes.extend(estimators.notes().iter().map(ToString::to_string));
         notes.extend(spectral_note(&built.scene));
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        let pictures = empty_pictures(films, &observers, description, input.scene_hash()?, estimators);
+        let pictures = empty_pictures(films, &observers, description, *hash, estimators);
         Ok(Self {
             options: RenderOptions {
                 integrator,
@@ -71,7 +92,7 @@ impl Job {
                 threads: options.threads.unwrap_or_else(cores),
                 estimators,
             },
-            scenes: seen_by(built.scene, &observers),
+            scenes: seen_by(&built.scene, &observers),
             pictures,
             notes,
             resumed: None,
@@ -159,7 +180,7 @@ impl Job {
     }
 }
 
-fn seen_by(scene: Scene, observers: &[Observer]) -> Vec<Scene> {
+fn seen_by(scene: &Scene, observers: &[Observer]) -> Vec<Scene> {
     observers.iter().map(|observer| Scene { observer: *observer, ..scene.clone() }).collect()
 }
 

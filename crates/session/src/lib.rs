@@ -45,7 +45,7 @@ pub use checkpoint::Checkpoint;
 pub use error::SessionError;
 pub use foreign::{ImportOptions, WrittenFiles, is_foreign};
 pub use goal::{Goal, Plan};
-pub use input::{Input, InputOptions};
+pub use input::{Input, InputOptions, ReadyScene};
 pub use job::{Job, JobOptions};
 pub use output::{Output, check_writable, write_all};
 pub use picture::colours;

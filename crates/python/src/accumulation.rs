@@ -1,0 +1,120 @@
+//! `tyndall.Accumulation`: the exact sums of some samples, to be added to those of other samples of the same picture.
+
+use std::path::{Path, PathBuf};
+
+use numpy::PyArrayDyn;
+use pyo3::prelude::{Bound, PyAny, PyAnyMethods, PyRef, PyResult, Python, pyclass, pymethods};
+use pyo3::types::PyBytes;
+use tyndall_film::Accumulation as Sums;
+
+use crate::error::{of_picture, wrong};
+use crate::pixels;
+
+/// The exact sums of a picture's samples.
+#[pyclass(module = "tyndall")]
+#[derive(Debug, Clone)]
+pub(crate) struct Accumulation(pub(crate) Sums);
+
+#[pymethods]
+impl Accumulation {
+    /// Reads an `.acc` file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        py.detach(|| Sums::read(&path)).map(Self).map_err(of_picture)
+    }
+
+    /// The accumulation of `to_bytes`.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let name = Path::new("bytes of an Accumulation");
+        py.detach(|| Sums::from_bytes(bytes, name)).map(Self).map_err(of_picture)
+    }
+
+    /// The content of an `.acc` file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.0.to_bytes()).map_err(wrong)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Writes the sums (`.acc`), the picture (`.exr`, `.png`), or its numbers (`.json`).
+    #[pyo3(signature = (path, exposure = 0.0))]
+    fn save(&self, py: Python<'_>, path: PathBuf, exposure: f32) -> PyResult<()> {
+        pixels::save(py, &path, std::slice::from_ref(&self.0), exposure)
+    }
+
+    /// Adds the samples of another.
+    fn merge(&mut self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<()> {
+        let other = &other.0;
+        let [this_one, other_one] = ["this accumulation", "the other accumulation"].map(Path::new);
+        let sums = &mut self.0;
+        py.detach(|| sums.merge(this_one, other, other_one)).map_err(of_picture)
+    }
+
+    fn __add__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
+        let mut sum = self.clone();
+        sum.merge(py, other)?;
+        Ok(sum)
+    }
+
+    fn __eq__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> bool {
+        let other = &other.0;
+        // Times differ from run to run.
+        py.detach(|| {
+            self.0.film == other.film
+                && tyndall_film::ImageMetadata { seconds: 0.0, ..self.0.metadata.clone() }
+                    == tyndall_film::ImageMetadata { seconds: 0.0, ..other.metadata.clone() }
+        })
+    }
+
+    /// Ranges of the samples that every pixel holds.
+    #[getter]
+    fn samples(&self) -> Vec<(u64, u64)> {
+        self.0.film.complete().clone().into()
+    }
+
+    /// Mean radiance, of shape (H, W, 3).
+    #[getter]
+    fn image<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        pixels::image(py, std::slice::from_ref(&self.0))
+    }
+
+    /// Its standard error.
+    #[getter]
+    fn standard_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        pixels::standard_error(py, std::slice::from_ref(&self.0))
+    }
+
+    /// Median over the pixels of standard error over mean of luminance.
+    #[getter]
+    fn median_error(&self, py: Python<'_>) -> Option<f64> {
+        py.detach(|| self.0.film.median_relative_error())
+    }
+
+    /// Hash of the scene.
+    #[getter]
+    fn scene_hash(&self) -> &str {
+        &self.0.metadata.scene_hash
+    }
+
+    /// Seed of the random numbers.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.metadata.seed
+    }
+
+    /// Time of rendering, summed over what was merged.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.0.metadata.seconds
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let from_bytes = py.get_type::<Self>().getattr("from_bytes")?;
+        Ok((from_bytes, (self.to_bytes(py)?,)))
+    }
+
+    fn __repr__(&self) -> String {
+        let film = &self.0.film;
+        format!("<tyndall.Accumulation {}x{}, samples {}>", film.width(), film.height(), film.complete())
+    }
+}
