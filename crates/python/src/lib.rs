@@ -49,7 +49,7 @@ mod _tyndall {
     #[pymodule_export]
     use crate::scene::{Scene, schema};
     #[pymodule_export]
-    use crate::slab::slab;
+    use crate::slab::slabs;
     #[pymodule_export]
     use crate::volume::Volume;
 

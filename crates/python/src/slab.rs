@@ -1,11 +1,13 @@
-//! One plane-parallel layer: what it reflects, transmits and absorbs.
+//! Plane-parallel layers: what they reflect, transmit and absorb.
+
+use std::sync::atomic::Ordering;
 
 use pyo3::FromPyObject;
 use pyo3::prelude::{PyRef, PyResult, Python, pyfunction};
 use tyndall_transport::walk::slab_input::{
     ALBEDO, ASYMMETRY, AZIMUTH, COSINE, REFRACTIVE_INDEX, Rule, TAU, slanted, views,
 };
-use tyndall_transport::walk::{Estimate, Incidence, Slab};
+use tyndall_transport::walk::{Estimate, Incidence, LayerFluxes, Slab};
 
 use crate::effort::Effort;
 use crate::error::wrong;
@@ -87,16 +89,25 @@ impl SlabInput<'_> {
     }
 }
 
-/// Sends photons through one layer, with a stream of random numbers of its own.
+/// Sends photons through layers, each with a stream of random numbers of its own; none before all are known to make sense.
 #[pyfunction]
-pub(crate) fn slab(py: Python<'_>, layer: SlabInput<'_>, effort: Effort, stream: u64) -> PyResult<Fluxes> {
-    let slab = layer.slab()?;
-    let options = effort.options(stream);
-    let (fluxes, signal) = cancellable(py, |cancel| slab.measure(&options, cancel));
+pub(crate) fn slabs(py: Python<'_>, layers: Vec<SlabInput<'_>>, effort: Effort) -> PyResult<Vec<Fluxes>> {
+    let slabs = layers.iter().map(SlabInput::slab).collect::<PyResult<Vec<Slab>>>()?;
+    let (fluxes, signal) = cancellable(py, |cancel| {
+        let measured = (0..).zip(&slabs).map(|(stream, slab)| {
+            let fluxes = slab.measure(&effort.options(stream), cancel);
+            (!cancel.load(Ordering::Relaxed)).then_some(fluxes)
+        });
+        measured.collect::<Option<Vec<LayerFluxes>>>()
+    });
     if let Some(signal) = signal {
         return Err(signal);
     }
+    Ok(fluxes.unwrap_or_default().iter().map(of_python).collect())
+}
+
+fn of_python(fluxes: &LayerFluxes) -> Fluxes {
     let pair = |estimate: &Estimate| (estimate.mean, estimate.standard_error);
     let totals = [&fluxes.reflectance, &fluxes.transmittance, &fluxes.unscattered, &fluxes.absorptance];
-    Ok((totals.map(pair), fluxes.radiance.iter().map(pair).collect(), fluxes.samples))
+    (totals.map(pair), fluxes.radiance.iter().map(pair).collect(), fluxes.samples)
 }

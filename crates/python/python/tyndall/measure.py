@@ -8,9 +8,12 @@ True
 
 from __future__ import annotations
 
+import json
 import math
-import time
-from typing import NamedTuple
+from collections.abc import Mapping
+from os import PathLike
+from time import perf_counter
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,9 +21,11 @@ from numpy.typing import ArrayLike
 from tyndall import _arrays, _tyndall
 from tyndall._arrays import Floats
 from tyndall._errors import Error
+from tyndall._render import _share, as_scene
+from tyndall._tyndall import Scene
 from tyndall.phase import PhaseFunction
 
-__all__ = ["Estimate", "Slab", "slab"]
+__all__ = ["Estimate", "Slab", "flux", "meters", "slab"]
 
 _GREATEST_SEED = 2**32 - 1
 
@@ -65,8 +70,8 @@ def slab(
     radiance: ArrayLike = (),
     azimuth: float = 0.0,
     samples: int | None = None,
-    error: float | None = None,
-    time_limit: float | None = None,
+    error: float | str | None = None,
+    time: float | None = None,
     seed: int = 0,
     threads: int | None = None,
 ) -> Slab:
@@ -80,7 +85,7 @@ def slab(
     estimated as well, `azimuth` degrees from the way a slanted beam travels.
 
     Each layer takes `samples` photons, or as many as bring the relative standard errors of reflectance and transmittance
-    below `error`, or as many as `time_limit` seconds allow; a million unless given.
+    below `error` (such as `0.01` or `"1%"`), or as many as `time` seconds allow; a million unless given.
 
     >>> layers = slab(tau=[0.5, 1, 2], albedo=[[0.9], [1.0]], g=0.75, samples=2000)
     >>> layers.reflectance.mean.shape
@@ -90,15 +95,15 @@ def slab(
     """
     if phase is not None and not (np.ndim(g) == 0 and g == 0):
         raise Error("slab: give `g` or `phase`, not both")
-    effort = effort_of(samples, error, time_limit, seed, threads)
+    effort = effort_of(samples, error, time, seed, threads)
     degrees = _degrees(incidence)
     arrays = _arrays.broadcast(tau=tau, albedo=albedo, g=g, n=n, ground_albedo=ground_albedo, incidence=degrees)
     views = _arrays.floats("radiance", radiance).ravel()
     function = PhaseFunction(phase) if isinstance(phase, str) else phase
-    start = time.perf_counter()
-    found = []
-    for stream, (one_tau, one_albedo, one_g, one_n, one_ground, one_degrees) in enumerate(
-        zip(*(array.ravel().tolist() for array in arrays))
+    start = perf_counter()
+    layers = []
+    for one_tau, one_albedo, one_g, one_n, one_ground, one_degrees in zip(
+        *(array.ravel().tolist() for array in arrays)
     ):
         layer = {
             "tau": one_tau,
@@ -111,21 +116,114 @@ def slab(
             "radiance": views.tolist(),
             "azimuth": float(azimuth),
         }
-        found.append(_tyndall.slab(layer, effort, stream))
-    return _gathered(found, arrays[0].shape, len(views), time.perf_counter() - start)
+        layers.append(layer)
+    found = _tyndall.slabs(layers, effort)
+    return _gathered(found, arrays[0].shape, len(views), perf_counter() - start)
+
+
+def meters(
+    scene: Scene | Mapping[str, Any] | str | PathLike[str],
+    *,
+    samples: int | None = None,
+    error: float | str | None = None,
+    time: float | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+) -> dict[str, dict[str, Any]]:
+    """What the `[[meter]]` tables of a scene measure, by their names, with the keys of `tyndall measure --json`.
+
+    Values with a standard error are `Estimate`s: of numbers, or of arrays where there are several (red, green and blue;
+    columns, of shape (z, x); bins of a body). Views are dictionaries of theta, phi and radiance. Each meter takes as much work as `slab` gives a layer.
+
+    >>> fog = {
+    ...     "camera": {"position": [0, 0, 5], "target": [0, 0, 0]},
+    ...     "volume": [{"slab": {"bottom": 0, "top": 1}, "mu_t": 2, "albedo": 0.9}],
+    ...     "meter": [{"type": "layer", "name": "fog", "bottom": 0, "top": 1, "direction": [0, -1, 0]}],
+    ... }
+    >>> found = meters(fog, samples=2000)["fog"]
+    >>> sorted(found), float(found["unscattered"].mean.round(2))
+    (['absorptance', 'reflectance', 'samples', 'seconds', 'transmittance', 'unscattered'], 0.14)
+    """
+    effort = effort_of(samples, error, time, seed, threads)
+    answer = json.loads(_tyndall.meters(as_scene(scene), effort))["meters"]
+    return {name: _reading(reading) for name, reading in answer.items()}
+
+
+def flux(
+    scene: Scene | Mapping[str, Any] | str | PathLike[str],
+    *,
+    bottom: float,
+    top: float,
+    direction: ArrayLike | None = (0.0, -1.0, 0.0),
+    samples: int | None = None,
+    error: float | str | None = None,
+    time: float | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    **keys: Any,
+) -> dict[str, Any]:
+    """The fluxes of the layer between the heights `bottom` and `top` of a scene, as a meter of type "layer" measures them.
+
+    Light travels along `direction`, or comes from the whole hemisphere if that is None. Other keys are those of the meter:
+    `periodic=[x0, z0, x1, z1]`, `columns=[nx, nz]`, `ground_albedo`, `radiance=[[theta, phi], …]`, `channel`.
+
+    >>> camera = {"position": [0, 0, 5], "target": [0, 0, 0]}
+    >>> volume = {"slab": {"bottom": 0, "top": 1}, "mu_t": 2, "albedo": 1}
+    >>> fluxes = flux({"camera": camera, "volume": [volume]}, bottom=0, top=1, samples=2000)
+    >>> round(float(fluxes["reflectance"].mean + fluxes["transmittance"].mean), 6)
+    1.0
+    """
+    meter = {"type": "layer", "name": "flux", "bottom": bottom, "top": top, **keys}
+    if direction is not None:
+        meter["direction"] = _arrays.directions("direction", direction).tolist()
+    measured = as_scene(scene).copy()
+    measured["meter"] = [meter]
+    return meters(measured, samples=samples, error=error, time=time, seed=seed, threads=threads)["flux"]
+
+
+def _reading(answer: dict[str, Any]) -> dict[str, Any]:
+    """A meter's answer with estimates for means and standard errors, and arrays for lists."""
+    shape = answer.get("columns", {}).get("shape")
+    # Of columns x changes fastest.
+    by_column = None if shape is None else (shape[1], shape[0])
+    reading: dict[str, Any] = {}
+    for key, value in answer.items():
+        if key == "columns":
+            reading[key] = {name: _estimate(each, by_column) for name, each in value.items() if name != "shape"}
+        elif key == "radiance" and isinstance(value, list):
+            reading[key] = [_view(view, by_column) for view in value]
+        else:
+            reading[key] = _estimate(value) if isinstance(value, dict) else value
+    return reading
+
+
+def _view(answer: dict[str, Any], by_column: tuple[int, int] | None) -> dict[str, Any]:
+    view = {"theta": answer["theta"], "phi": answer["phi"], "radiance": _estimate(answer)}
+    if "columns" in answer:
+        view["columns"] = _estimate(answer["columns"], by_column)
+    return view
+
+
+def _estimate(answer: dict[str, Any], shape: tuple[int, ...] | None = None) -> Estimate:
+    mean, error = (np.array(answer[part], dtype=float) for part in ("mean", "standard_error"))
+    # JSON has no infinity, which the error is as long as nothing is known of it.
+    error[np.isnan(error)] = np.inf
+    shape = mean.shape if shape is None else shape
+    return Estimate(mean.reshape(shape)[()], error.reshape(shape)[()])
 
 
 def effort_of(
-    samples: int | None, error: float | None, time_limit: float | None, seed: int, threads: int | None
+    samples: int | None, error: float | str | None, time: float | None, seed: int, threads: int | None
 ) -> dict[str, object]:
     """How much work, as the compiled part takes it."""
-    for name, value in (("error", error), ("time_limit", time_limit)):
+    error = _share(error)
+    for name, value in (("error", error), ("time", time)):
         if value is not None and not (isinstance(value, (int, float)) and value > 0):
             raise Error(f"{name}: a number above 0 is needed, not {value!r}")
     return {
         "samples": None if samples is None else _arrays.whole("samples", samples, 1, 1 << 31),
         "error": error,
-        "seconds": time_limit,
+        "seconds": time,
         "seed": _arrays.whole("seed", seed, 0, _GREATEST_SEED),
         "threads": None if threads is None else _arrays.whole("threads", threads, 1, 65535),
     }
