@@ -10,7 +10,17 @@ use tyndall_film::Accumulation as Sums;
 use crate::error::{of_picture, wrong};
 use crate::pixels;
 
-/// The exact sums of a picture's samples.
+/// The exact sums of a picture's samples, to be added to those of other samples: in any split and order, the same bits.
+///
+/// >>> import tyndall
+/// >>> scene = tyndall.Scene({"camera": {"position": [0, 0, 0], "direction": [0, 0, 1]}, "film": {"resolution": [8, 8]},
+/// ...     "medium": {"mu_t": 1, "albedo": 0.5}, "light": {"type": "constant", "radiance": 1}})
+/// >>> first = tyndall.render(scene, samples=(0, 3), progress=False).accumulation
+/// >>> second = tyndall.render(scene, samples=(3, 8), progress=False).accumulation
+/// >>> (first + second).samples
+/// [(0, 8)]
+/// >>> first + second == tyndall.render(scene, spp=8, progress=False).accumulation
+/// True
 #[pyclass(module = "tyndall")]
 #[derive(Debug, Clone)]
 pub(crate) struct Accumulation(pub(crate) Sums);

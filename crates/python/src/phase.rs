@@ -11,7 +11,7 @@ use crate::error::wrong;
 use crate::slices::{numbers, pairs, vectors};
 
 /// A phase function in one line, for light that arrives in one direction.
-#[pyclass(frozen, module = "tyndall._tyndall")]
+#[pyclass(frozen, module = "tyndall.phase")]
 pub(crate) struct PhaseFunction {
     curve: PhaseCurve,
     note: Option<String>,

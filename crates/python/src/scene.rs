@@ -19,6 +19,22 @@ use crate::units;
 use crate::volume::Volume;
 
 /// What is rendered: camera, media, surfaces, lights.
+///
+/// Made of a dictionary with the keys of a scene file (`schema` tells them all). Values may be NumPy arrays; a `Volume` may stand
+/// where a volume's `file` would. Lists of objects may be dictionaries by name, or a single object. Where a length, a quantity per
+/// length or an angle is wanted, text with a unit (`"0.3 1/mm"`) and quantities of pint will do; numbers are in units of the scene
+/// (`unit`, metres unless given).
+///
+/// >>> import tyndall
+/// >>> scene = tyndall.Scene({
+/// ...     "unit": "mm",
+/// ...     "camera": {"position": [0, 0, "1 cm"], "target": [0, 0, 0]},
+/// ...     "volume": {"milk": {"sphere": {"center": [0, 0, 0], "radius": 1}, "preset": "wholemilk"}},
+/// ...     "light": [{"type": "constant", "radiance": 1}],
+/// ... })
+/// >>> scene["camera.position"]
+/// [0.0, 0.0, 10.0]
+/// >>> scene["camera.vertical_fov"] = 30
 #[pyclass(module = "tyndall")]
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {

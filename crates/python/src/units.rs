@@ -59,7 +59,7 @@ pub(crate) fn from_pint<'py>(
         return Ok(None);
     }
     let (words, unit) = wanted(dimension).unwrap_or(("a number without a unit", "dimensionless"));
-    let is_plain = object.getattr("units")?.str()?.to_string() == "dimensionless";
+    let is_plain = object.getattr("units")?.str()? == "dimensionless";
     let unit = if is_plain { "dimensionless" } else { unit };
     let converted = object.call_method1("to", (unit,)).map_err(|_| {
         let shown = object.str().map_or_else(|_| "a quantity".to_owned(), |text| text.to_string());

@@ -14,6 +14,21 @@ use crate::error::{self, wrong};
 use crate::units;
 
 /// A grid of numbers in space, to be rendered or to stand where a scene names a file.
+///
+/// `array[i, j, k]` is the voxel at (x, y, z) = (i, j, k), as in a `.npy` file; an array of shape (X, Y, Z, 3) holds vectors. Any
+/// type of integers or floats in any order will do: the array is read where it stands, and only the grid, which leaves out what is
+/// the same over 8³ voxels, is new. Later changes of the array do not change the volume. Values that are not finite count as 0.
+///
+/// `spacing` is the distance between voxels, one or three along x, y, z, and `origin` the place of the first voxel's centre; in scene
+/// units, or with units (`"0.5 mm"`). Instead, `index_to_world` is a 4×4 matrix, such as NIfTI's affine. An xarray DataArray with
+/// dimensions x, y and z, in any order, says these by its coordinates.
+///
+/// >>> import numpy, tyndall
+/// >>> volume = tyndall.Volume(numpy.ones((8, 16, 8), dtype="uint8"), spacing=0.5)
+/// >>> volume
+/// <tyndall.Volume `density`, 8x16x8 voxels>
+/// >>> volume.index_to_world[0].tolist()
+/// [0.5, 0.0, 0.0, 0.0]
 #[pyclass(module = "tyndall", frozen)]
 #[derive(Debug, Clone)]
 pub(crate) struct Volume {

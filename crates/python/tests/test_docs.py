@@ -20,4 +20,4 @@ def test_the_blocks_of_a_page_run_in_order(name: str, tmp_path: Path, monkeypatc
     for block in blocks:
         # Empty lines before it, so that what fails is told with its line of the page.
         before = "\n" * text.count("\n", 0, block.start(1))
-        exec(compile(before + block.group(1), str(DOCS / name), "exec"), names)
+        exec(compile(before + block.group(1), str(DOCS / name), "exec"), names)  # noqa: S102

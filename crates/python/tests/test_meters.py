@@ -32,23 +32,23 @@ SCENE = {
 }
 
 
-def test_meters_answer_as_the_command(command: Callable[..., str], tmp_path: Path) -> None:
+def test_meters_answer_as_the_command(answer: Callable[..., str], tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(tyndall.Scene(SCENE).to_toml())
-    answer = json.loads(command("measure", str(path), "--samples", "3000", "--seed", "2", "--json"))["meters"]
+    told = json.loads(answer("measure", str(path), "--samples", "3000", "--seed", "2", "--json"))["meters"]
     found = measure.meters(SCENE, samples=3000, seed=2)
-    assert sorted(found) == sorted(answer) == ["below", "field", "meter.1"]
+    assert sorted(found) == sorted(told) == ["below", "field", "meter.1"]
     for key in ("reflectance", "transmittance", "unscattered", "absorptance"):
-        assert found["field"][key] == tuple(answer["field"][key].values())
-    assert np.array_equal(found["meter.1"]["bins"].mean, answer["meter.1"]["bins"]["mean"])
-    assert np.array_equal(found["below"]["irradiance"].standard_error, answer["below"]["irradiance"]["standard_error"])
+        assert found["field"][key] == tuple(told["field"][key].values())
+    assert np.array_equal(found["meter.1"]["bins"].mean, told["meter.1"]["bins"]["mean"])
+    assert np.array_equal(found["below"]["irradiance"].standard_error, told["below"]["irradiance"]["standard_error"])
     view = found["field"]["radiance"][1]
-    assert (view["theta"], view["phi"], view["radiance"].mean) == (150, 30, answer["field"]["radiance"][1]["mean"])
+    assert (view["theta"], view["phi"], view["radiance"].mean) == (150, 30, told["field"]["radiance"][1]["mean"])
     columns = found["field"]["columns"]["transmittance"].mean
     # The box takes one column in x and two of three in z.
     assert columns.shape == (3, 2) and view["columns"].mean.shape == (3, 2)
     assert np.all(columns[:2, 0] < columns[2, 1])
-    assert columns.ravel().tolist() == answer["field"]["columns"]["transmittance"]["mean"]
+    assert columns.ravel().tolist() == told["field"]["columns"]["transmittance"]["mean"]
 
 
 def test_fluxes_of_a_layer_need_no_meter_in_the_scene_and_leave_it_alone() -> None:

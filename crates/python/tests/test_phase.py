@@ -118,14 +118,14 @@ def test_phase_functions_are_pickled_by_their_text() -> None:
 
 
 @pytest.mark.parametrize("spec", [*SPECS[:10], "mie(m=1.33+1e-5i,x=10)"])
-def test_figures_are_those_of_the_command(spec: str, command: Callable[..., str]) -> None:
-    answer = json.loads(command("phase", spec, "--json"))
-    angles = np.radians(answer["angles_deg"])
-    assert phase.mean_cosine(spec) == answer["g"]
-    assert np.allclose(phase.evaluate(spec, np.cos(angles)), answer["values"], rtol=1e-12)
-    if "q_ext" in answer:
+def test_figures_are_those_of_the_command(spec: str, answer: Callable[..., str]) -> None:
+    told = json.loads(answer("phase", spec, "--json"))
+    angles = np.radians(told["angles_deg"])
+    assert phase.mean_cosine(spec) == told["g"]
+    assert np.allclose(phase.evaluate(spec, np.cos(angles)), told["values"], rtol=1e-12)
+    if "q_ext" in told:
         sphere = phase.mie(x=10, m=1.33 + 1e-5j)
-        assert [sphere.q_ext, sphere.q_sca, sphere.q_back] == [answer[key] for key in ("q_ext", "q_sca", "q_back")]
+        assert [sphere.q_ext, sphere.q_sca, sphere.q_back] == [told[key] for key in ("q_ext", "q_sca", "q_back")]
 
 
 @pytest.mark.parametrize(

@@ -30,19 +30,19 @@ def test_layers_reflect_and_transmit_as_the_tables_say() -> None:
 
 
 def test_each_layer_has_random_numbers_of_its_own_and_the_first_those_of_the_command(
-    command: Callable[..., str],
+    answer: Callable[..., str],
 ) -> None:
     slab = measure.slab([2.0, 2.0], 0.9, 0.75, samples=5000, seed=4, radiance=[1.0, 0.5])
     assert slab.reflectance.mean[0] != slab.reflectance.mean[1]
     line = "slab --tau 2 --albedo 0.9 --g 0.75 --samples 5000 --seed 4 --radiance 1,0.5 --json"
-    answer = json.loads(command(*line.split()))
+    told = json.loads(answer(*line.split()))
     for name in ("reflectance", "transmittance", "unscattered", "absorptance"):
         estimate = getattr(slab, name)
-        assert estimate.mean[0] == answer[name]["mean"]
-        assert estimate.standard_error[0] == answer[name]["standard_error"]
+        assert estimate.mean[0] == told[name]["mean"]
+        assert estimate.standard_error[0] == told[name]["standard_error"]
     assert slab.reflected_radiance is not None and slab.transmitted_radiance is not None
-    assert slab.reflected_radiance.mean[0, 1] == answer["radiance"][1]["reflected"]["mean"]
-    assert slab.transmitted_radiance.standard_error[0, 0] == answer["radiance"][0]["transmitted"]["standard_error"]
+    assert slab.reflected_radiance.mean[0, 1] == told["radiance"][1]["reflected"]["mean"]
+    assert slab.transmitted_radiance.standard_error[0, 0] == told["radiance"][0]["transmitted"]["standard_error"]
 
 
 def test_threads_change_nothing_and_seeds_do() -> None:

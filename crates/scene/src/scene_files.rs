@@ -65,20 +65,18 @@ impl MemoryGrid {
 
     /// Hash of all that a volume has from the grid.
     pub fn hash(&self) -> SceneHash {
-        let content = *self.content.get_or_init(|| SceneHash::of(hash_of_grid(&self.grid)));
-        if self.scale == 1.0 {
-            return content;
-        }
-        let hasher = Sha256::new().chain_update(content.0).chain_update(self.scale.to_le_bytes());
+        let content = *self.content.get_or_init(|| SceneHash::of(hash_of_values(&self.grid)));
+        let mut hasher = Sha256::new().chain_update(content.0);
+        let to_scene = self.place() * self.grid.index_to_world;
+        to_scene.to_cols_array().iter().for_each(|number| hasher.update(number.to_le_bytes()));
         SceneHash::of(hasher)
     }
 }
 
 /// The name of the grid is left out, as it is only for messages.
-fn hash_of_grid(grid: &Grid) -> Sha256 {
+fn hash_of_values(grid: &Grid) -> Sha256 {
     let mut hasher = Sha256::new();
     hasher.update([grid.class as u8]);
-    grid.index_to_world.to_cols_array().iter().for_each(|number| hasher.update(number.to_le_bytes()));
     match &grid.values {
         GridValues::Float(tree) => hash_tree(&mut hasher, 0, tree, |value| value.to_le_bytes()),
         GridValues::Double(tree) => hash_tree(&mut hasher, 1, tree, |value| value.to_le_bytes()),

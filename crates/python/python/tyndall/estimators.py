@@ -154,8 +154,8 @@ def sample_distance(
     if np.prod(shape, dtype=float) * samples > _MOST_FLIGHTS:
         raise Error(f"samples: {samples} of each ray are more than {_MOST_FLIGHTS} in all; take them in several calls")
     *columns, lookups = _tyndall.sample_distances(_scene_of(medium), rays, sampling)
-    flights = [column.reshape(*shape, samples) for column in columns]
-    return Flights(*flights, lookups=lookups.reshape(shape)[()])
+    t, weight, escape = (column.reshape(*shape, samples) for column in columns)
+    return Flights(t, weight, escape, lookups.reshape(shape)[()])
 
 
 def optical_thickness(

@@ -246,7 +246,8 @@ def _degrees(incidence: str | ArrayLike) -> ArrayLike:
 
 def _gathered(found: list[_tyndall.SlabFluxes], shape: tuple[int, ...], views: int, seconds: float) -> Slab:
     totals = np.array([fluxes[0] for fluxes in found]).reshape(*shape, 4, 2)
-    estimates = [Estimate(totals[..., number, 0][()], totals[..., number, 1][()]) for number in range(4)]
+    each = (Estimate(totals[..., number, 0][()], totals[..., number, 1][()]) for number in range(4))
+    reflectance, transmittance, unscattered, absorptance = each
     above = below = None
     if views:
         # A layer without a bottom has no radiance there.
@@ -255,4 +256,4 @@ def _gathered(found: list[_tyndall.SlabFluxes], shape: tuple[int, ...], views: i
         above = Estimate(radiance[..., 0, :, 0], radiance[..., 0, :, 1])
         below = Estimate(radiance[..., 1, :, 0], radiance[..., 1, :, 1])
     photons = np.array([fluxes[2] for fluxes in found]).reshape(shape)[()]
-    return Slab(*estimates, above, below, photons, seconds)
+    return Slab(reflectance, transmittance, unscattered, absorptance, above, below, photons, seconds)

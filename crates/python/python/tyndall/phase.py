@@ -186,8 +186,8 @@ def mie(
     size, n, k = _arrays.broadcast(x=x, m=index.real, m_imag=index.imag)
     angles = np.empty(0) if at is None else at.ravel()
     figures, values = _tyndall.mie_spheres(size.ravel(), n.ravel(), k.ravel(), angles)
-    shaped = [_shaped(figure, size.shape) for figure in figures]
-    return Mie(*shaped, values=None if at is None else _shaped(values, size.shape + at.shape))
+    q_ext, q_sca, q_abs, q_back, g = (_shaped(figure, size.shape) for figure in figures)
+    return Mie(q_ext, q_sca, q_abs, q_back, g, None if at is None else _shaped(values, size.shape + at.shape))
 
 
 def refractive_index(material: str, wavelength_nm: ArrayLike) -> NDArray[np.complex128]:
@@ -220,8 +220,9 @@ def _distributed(
         figures.append([phase.q_ext or 0.0, phase.q_sca or 0.0, phase.q_abs or 0.0, back, phase.mean_cosine])
         if at is not None:
             values.append(phase.values(at.ravel()))
-    shaped = [_shaped(column, wavelength.shape) for column in np.array(figures).reshape(-1, 5).T]
-    return Mie(*shaped, values=None if at is None else _shaped(np.array(values), wavelength.shape + at.shape))
+    q_ext, q_sca, q_abs, q_back, g = (_shaped(row, wavelength.shape) for row in np.array(figures).reshape(-1, 5).T)
+    table = None if at is None else _shaped(np.array(values), wavelength.shape + at.shape)
+    return Mie(q_ext, q_sca, q_abs, q_back, g, table)
 
 
 def _index(

@@ -172,7 +172,8 @@ def _colour_map(name: str, given: str | Callable[[Floats], Any]) -> Floats:
         raise Error(f"{name}: the colour map must make (N, 3) or (N, 4) colours of N numbers")
     encoded = np.clip(colours[:, :3], 0, 1)
     # IEC 61966-2-1.
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    linear: Floats = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    return linear
 
 
 def _interpolated(values: ArrayLike, at: Floats, rows: Floats) -> Floats:
