@@ -18,8 +18,8 @@ import tyndall
 
 distributed = pytest.importorskip("distributed", reason="pip install dask distributed")
 
-import tyndall.dask  # noqa: E402
-from tyndall.dask import _pool, _sending, _work  # noqa: E402
+import tyndall.dask
+from tyndall.dask import _pool, _sending, _work
 
 Client = Any
 
@@ -243,7 +243,7 @@ def test_workers_of_another_version_are_refused(one_worker: Client, cloud: tynda
 
 
 def test_without_dask_one_line_says_what_to_install() -> None:
-    program = "import sys; sys.modules['distributed'] = None; import tyndall.dask"
+    program = "import sys, tyndall; sys.modules['distributed'] = None; tyndall.dask.render"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.stderr.splitlines()[-1] == "ImportError: tyndall.dask needs Dask: pip install dask distributed"
 

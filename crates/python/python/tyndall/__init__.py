@@ -18,6 +18,8 @@ A scene is a dictionary with the keys of a scene file, and a volume is a NumPy a
 True
 """
 
+from types import ModuleType
+
 from tyndall import estimators, measure, phase
 from tyndall._errors import Error, FileError
 from tyndall._render import load, render
@@ -44,3 +46,12 @@ __all__ = [
     "schema",
     "volume_scene",
 ]
+
+
+def __getattr__(name: str) -> ModuleType:
+    """`tyndall.dask`, which takes a moment to import, when it is first asked for."""
+    if name == "dask":
+        import importlib
+
+        return importlib.import_module("tyndall.dask")
+    raise AttributeError(f"module 'tyndall' has no attribute {name!r}")

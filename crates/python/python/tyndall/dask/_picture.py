@@ -110,11 +110,21 @@ class Picture:
     def bring_home(self, client: Client) -> None:
         """Adds up what the workers have: a tree of sums, two by two, all on the cluster."""
         sums = list(self.partial.values())
-        self.partial = {}
         futures = [part.future for part in sums]
         while len(futures) > 1:
             futures = [_add(client, futures[i : i + 2]) for i in range(0, len(futures), 2)]
         self.coming_home = Sums(futures[0], [block for part in sums for block in part.blocks])
+        self.partial = {}
+
+    def blocks_added(self) -> list[Block]:
+        """The blocks that are in sums on workers."""
+        sums = [*self.partial.values(), *([self.coming_home] if self.coming_home is not None else [])]
+        return [block for part in sums for block in part.blocks]
+
+    def take_in(self, sums: Accumulation) -> None:
+        """Sums that have come home. Those that were there before do not change: somebody may look at them."""
+        self.home = sums if self.home is None else self.home + sums
+        self.coming_home = None
 
 
 def _add(client: Client, futures: Sequence[Future], worker: str = "") -> Future:

@@ -5,6 +5,7 @@ What is lost with a worker Dask makes again from what it was made of; what Dask 
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -46,12 +47,11 @@ class Pool:
     report: Callable[[Picture, int, bool], object]
     """Told every now and then of a picture, the number of workers, and whether its sums at home are new."""
     pictures: list[Picture] = field(default_factory=list)
-    _has_more: bool = True
+    _next: Picture | None = None
     _workers: int = 1
     _roll_called: float = 0.0
     _last_heard: dict[str, float] = field(default_factory=dict)
     _next_homecoming: float = 0.0
-    _homecoming_began: float = 0.0
 
     def __post_init__(self) -> None:
         self._sending = Sending(self.client)
@@ -59,7 +59,8 @@ class Pool:
 
     def run(self) -> Iterator[Picture]:
         """Renders, and yields pictures as they are done."""
-        while self._has_more or self.pictures:
+        self._next = self.open_next()
+        while self._next is not None or self.pictures:
             self._call_roll()
             self._hand_out()
             for picture in list(self.pictures):
@@ -73,23 +74,25 @@ class Pool:
 
     def stop(self) -> None:
         """Cancels what is under way."""
-        futures = [block.future for picture in self.pictures for block in picture.running]
+        running = [block.future for picture in self.pictures for block in picture.running]
+        futures = [future for future in running if future.status == "pending"]
         if futures:
             self.client.cancel(futures)
 
     def rescue(self, picture: Picture) -> Accumulation | None:
         """What there is of a picture after `stop`, brought home in good time."""
-        done = [block for block in picture.running if block.future.status == "finished"]
-        picture.running = []
-        if done:
-            picture.gather(self.client, done)
-        for _ in range(2):
-            if picture.coming_home is not None:
-                home = picture.coming_home.future.result(timeout=LAST_HOMECOMING)
-                picture.home = home if picture.home is None else picture.home + home
-                picture.coming_home = None
-            if picture.partial:
-                picture.bring_home(self.client)
+        # If it fails, what had come home before has to do.
+        with contextlib.suppress(Exception, KeyboardInterrupt):
+            # Ctrl-C may have come when a block was added already, and still counted as running.
+            added = picture.blocks_added()
+            done = [block for block in picture.running if block.future.status == "finished" and block not in added]
+            if done:
+                picture.gather(self.client, done)
+            while picture.coming_home is not None or picture.partial:
+                if picture.coming_home is None:
+                    picture.bring_home(self.client)
+                else:
+                    picture.take_in(picture.coming_home.future.result(timeout=LAST_HOMECOMING))
         return picture.home
 
     def _call_roll(self) -> None:
@@ -104,13 +107,12 @@ class Pool:
             picture = next((picture for picture in self.pictures if picture.todo), None)
             if picture is None:
                 # A picture that comes home takes memory as well, so that not too many are begun.
-                picture = self.open_next() if self._has_more and len(self.pictures) < slots + 2 else None
-                self._has_more &= picture is not None or len(self.pictures) >= slots + 2
-                if picture is None:
+                if self._next is None or len(self.pictures) >= slots + 2:
                     return
+                picture, self._next = self._next, self.open_next()
                 self.pictures.append(picture)
-            # Others follow: there is no end to be met together.
-            sharers = 1 if self._has_more else slots
+            # If others follow, there is no end to be met together.
+            sharers = slots if self._next is None else 1
             samples, attempt = picture.take(self.pace.block(picture.left, sharers))
             if picture.sent is None:
                 picture.sent = self._sending.send(picture.scene, to_all=self.is_shared)
@@ -133,12 +135,12 @@ class Pool:
         failed = [block for block in picture.running if block.future.status in ("error", "cancelled")]
         if not done and not failed:
             return
-        picture.running = [block for block in picture.running if block not in done and block not in failed]
-        for block in failed:
-            self._try_again(picture, block.future, [block])
         if done:
             picture.gather(self.client, done)
             self._learn(done, picture)
+        picture.running = [block for block in picture.running if block not in done and block not in failed]
+        for block in failed:
+            self._try_again(picture, block.future, [block])
 
     def _learn(self, done: list[Block], picture: Picture) -> None:
         now = time.monotonic()
@@ -161,7 +163,6 @@ class Pool:
             is_due = now >= self._next_homecoming or not (picture.todo or picture.running)
             if picture.partial and is_due:
                 picture.bring_home(self.client)
-                self._homecoming_began = now
             return False
         if sums_coming.future.status in ("error", "cancelled"):
             picture.coming_home = None
@@ -170,12 +171,7 @@ class Pool:
         if sums_coming.future.status != "finished":
             return False
         began = time.monotonic()
-        sums = sums_coming.future.result()
-        if picture.home is None:
-            picture.home = sums
-        else:
-            picture.home.merge(sums)
-        picture.coming_home = None
+        picture.take_in(sums_coming.future.result())
         self.report(picture, self._workers, True)
         now = time.monotonic()
         self._next_homecoming = now + max(self.refresh, (now - began) / HOMECOMING_SHARE)

@@ -46,6 +46,7 @@ class Sending:
 
     def send(self, scene: Scene, to_all: bool) -> SentScene:
         """Sends a scene: to all workers, who pass it on to each other, or to one, from which others have it when they need it."""
+        self._client.wait_for_workers(1)
         text, paths, volumes = scene.to_parts()
         files = {name: pathlib.Path(path) for name, path in paths.items()}
         # The names of files have hashes of their contents in them.
@@ -56,18 +57,23 @@ class Sending:
         return SentScene(self._put(outline, key, to_all), tuple(contents), {name: str(path) for name, path in files.items()})
 
     def _content(self, name: str, path: pathlib.Path, to_all: bool) -> Future:
-        there = self._there.get(name)
+        there = self._known(name)
         try:
             return there if there is not None else self._put(path.read_bytes(), name, to_all)
         except OSError as error:
             raise FileError(f"{path}: {os.strerror(error.errno or 0)}") from error
 
     def _volume(self, volume: Volume, to_all: bool) -> Future:
-        there = self._there.get(volume.hash)
+        there = self._known(volume.hash)
         return there if there is not None else self._put(volume.to_bytes(), volume.hash, to_all)
 
+    def _known(self, key: str) -> Future | None:
+        there = self._there.get(key)
+        # Otherwise it was lost with the workers that had it.
+        return there if there is not None and there.status == "finished" else None
+
     def _put(self, content: Outline | bytes, key: str, to_all: bool) -> Future:
-        # Content that was lost with its workers is sent anew, under a new name.
+        # What was lost and is sent anew needs a new name.
         name = f"tyndall-scene-{key.replace('/', '-')}-{uuid.uuid4().hex[:8]}"
         sent: Mapping[str, Future] = self._client.scatter({name: content}, broadcast=to_all)
         self._there[key] = sent[name]
