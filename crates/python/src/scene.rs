@@ -102,13 +102,22 @@ impl Scene {
         Self::from_tree(table, reader.volumes, folder, "scene")
     }
 
-    /// Opens whatever can be rendered.
+    /// Opens whatever can be rendered; without a path, the built-in scene.
     #[staticmethod]
-    #[pyo3(signature = (path, define = BTreeMap::new(), strict = false))]
-    fn load(py: Python<'_>, path: PathBuf, define: BTreeMap<String, String>, strict: bool) -> PyResult<Self> {
+    #[pyo3(signature = (path = None, define = BTreeMap::new(), strict = false))]
+    fn load(
+        py: Python<'_>,
+        path: Option<PathBuf>,
+        define: BTreeMap<String, String>,
+        strict: bool,
+    ) -> PyResult<Self> {
         let import = ImportOptions { strict, define: define.into_iter().collect() };
         let options = InputOptions { import, ..InputOptions::default() };
-        let input = py.detach(|| Input::open(&path, &options)).map_err(of_session)?;
+        let open = || match &path {
+            Some(path) => Input::open(path, &options),
+            None => Input::built_in(&[]),
+        };
+        let input = py.detach(open).map_err(of_session)?;
         Self::new(input, BTreeMap::new())
     }
 

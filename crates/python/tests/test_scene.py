@@ -142,6 +142,10 @@ def test_scenes_of_other_renderers_are_opened() -> None:
     assert tyndall.render(scene, progress=False).image.shape == (6, 8, 3)
 
 
+def test_without_a_path_it_is_the_built_in_scene() -> None:
+    assert repr(tyndall.load(set={"film.resolution": [8, 6]})) == "<tyndall.Scene 8x6, 1 volume, 1 light>"
+
+
 def test_the_schema_is_json() -> None:
     import json
 

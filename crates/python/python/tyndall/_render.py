@@ -14,7 +14,7 @@ from tyndall._tyndall import Progress, Render, Scene, Volume
 
 
 def load(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None = None,
     *,
     set: Mapping[str, Any] | None = None,
     define: Mapping[str, str] | None = None,
@@ -23,7 +23,7 @@ def load(
     """Opens whatever the command `tyndall render` does.
 
     That is a scene file (`.toml`), a scene of pbrt-v4 (`.pbrt`) or Mitsuba 3 (`.xml`), or a volume file, for which camera, light
-    and density are chosen from the data. `set` changes values by their path, `define` says what `$NAME` stands for in a scene of
+    and density are chosen from the data; without a path it is the built-in cumulus. `set` changes values by their path, `define` says what `$NAME` stands for in a scene of
     Mitsuba, and `strict` refuses scenes of other renderers of which something is not supported. What was guessed is in the
     scene's `notes`.
 
