@@ -1,15 +1,12 @@
 //! `tyndall measure`: the meters of a scene, with their standard errors.
 
-mod report;
 mod table;
 
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
-use miette::{IntoDiagnostic, miette};
-use tyndall_scene::description::MeterDescription;
-use tyndall_transport::{Measurement, measure};
+use miette::IntoDiagnostic;
+use tyndall_session::{read_meters, readings_report};
 
 use crate::Done;
 use crate::effort::Effort;
@@ -49,40 +46,16 @@ pub struct Args {
     import: ImportArgs,
 }
 
-/// What one meter has measured.
-pub struct Reading<'a> {
-    name: String,
-    meter: &'a MeterDescription,
-    measurement: Measurement,
-    seconds: f64,
-}
-
 /// Measures with one meter after the other, and prints.
 pub fn run(args: Args) -> miette::Result<Done> {
     let input = open(Some(&args.input), &args.set, &RawArgs::default(), &args.import)?;
-    let description = input.description();
-    let shown = args.input.display();
-    if description.meters.is_empty() {
-        return Err(miette!(
-            "{shown}: has no meters; add a [[meter]] table, such as type = \"layer\" with bottom and top"
-        ));
-    }
     let built = input.build()?;
     input.notes().iter().chain(&built.notes).for_each(|note| tell(format!("note: {note}")));
     let cancel = cancel_on_interrupt()?;
-    let mut readings = Vec::new();
-    for (number, meter) in description.meters.iter().enumerate() {
-        let name = meter.name().map_or_else(|| format!("meter.{number}"), str::to_owned);
-        let start = Instant::now();
-        let measurement = measure(&built.scene, meter, &args.effort.options(number as u64), &cancel)
-            .map_err(|problem| miette!("{shown}: [[meter]] `{name}`: {problem}"))?;
-        if measurement.samples() == 0 {
-            break;
-        }
-        readings.push(Reading { name, meter, measurement, seconds: start.elapsed().as_secs_f64() });
-    }
+    let options = |number| args.effort.options(number);
+    let readings = read_meters(input.name(), input.description(), &built.scene, options, &cancel)?;
     if args.json {
-        answer(serde_json::to_string(&report::report(&readings)).into_diagnostic()? + "\n")?;
+        answer(serde_json::to_string(&readings_report(&readings)).into_diagnostic()? + "\n")?;
     } else {
         readings.iter().try_for_each(|reading| answer(table::table(reading)))?;
     }

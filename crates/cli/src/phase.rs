@@ -1,25 +1,22 @@
 //! `tyndall phase`: what a phase function is: values, mean cosine, picture.
 
 mod angles;
-mod curve;
 mod picture;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::DVec3;
 use miette::{IntoDiagnostic, miette};
 use serde_json::json;
 use tyndall_optics::PhaseFunction;
-use tyndall_optics::mie::{MieAverage, MieCache};
-use tyndall_scene::description::{PhaseDescription, phase_spec};
-use tyndall_scene::{GREY_WAVELENGTH_NM, MieSpheres, build_phase, grey_phase, mie_spheres};
+use tyndall_optics::mie::MieAverage;
+use tyndall_scene::{MieSpheres, PhaseCurve};
 use tyndall_session::check_writable;
 
 use crate::plot::Kind;
 use crate::terminal::{answer, tell};
 use angles::Angles;
-use curve::Curve;
 
 /// Show phase functions: how light is spread over directions when it is scattered
 ///
@@ -71,7 +68,7 @@ enum Radius {
 pub fn run(args: Args) -> miette::Result<()> {
     check_writable(args.output.as_deref())?;
     let curves =
-        args.specs.iter().map(|spec| curve(spec, args.incidence)).collect::<miette::Result<Vec<_>>>()?;
+        args.specs.iter().map(|spec| read(spec, args.incidence)).collect::<miette::Result<Vec<_>>>()?;
     if args.incidence.is_some() && curves.iter().all(|curve| curve.projected_area().is_none()) {
         return Err(miette!(
             "--incidence: none of the phase functions depends on it; leave it out, or give an sggx"
@@ -93,36 +90,20 @@ pub fn run(args: Args) -> miette::Result<()> {
     answer(table(&curves, &args.angles.0))
 }
 
-fn curve(spec: &str, incidence: Option<DVec3>) -> miette::Result<Curve> {
-    let description = phase_spec::parse(spec)?;
-    let name = spec.trim().to_owned();
-    let PhaseDescription::Mie { wavelength_nm, ref m, x, .. } = description else {
-        return Ok(Curve::new(name, read(spec)?, incidence));
-    };
-    if wavelength_nm.is_none() && (m.is_none() || x.is_none()) {
-        tell(format!(
-            "note: {spec}: the wavelength is {GREY_WAVELENGTH_NM} nm; `wavelength=…nm` names another"
-        ));
+fn read(spec: &str, incidence: Option<DVec3>) -> miette::Result<PhaseCurve> {
+    let (curve, note) = PhaseCurve::read(spec, incidence)?;
+    if let Some(note) = note {
+        tell(format!("note: {note}"));
     }
-    let wavelength_nm = wavelength_nm.unwrap_or(GREY_WAVELENGTH_NM);
-    let cache = MieCache::from_environment();
-    match mie_spheres(&description, wavelength_nm, Path::new(""), &cache)? {
-        Some(spheres) => Curve::of_spheres(name, spheres).into_diagnostic(),
-        None => Ok(Curve::new(name, read(spec)?, incidence)),
-    }
+    Ok(curve)
 }
 
 /// The phase function of a one-line description; files it names are relative to the working folder.
-pub fn read(spec: &str) -> miette::Result<PhaseFunction> {
-    let description = phase_spec::parse(spec)?;
-    let (phase, note) = grey_phase(&build_phase(&description, Path::new(""))?);
-    if let Some(note) = note {
-        tell(format!("note: {spec}: {note}"));
-    }
-    Ok(phase)
+pub fn phase_function(spec: &str) -> miette::Result<PhaseFunction> {
+    read(spec, None).map(|curve| curve.phase_function().clone())
 }
 
-fn object(curve: &Curve, angles: &[f64]) -> serde_json::Value {
+fn object(curve: &PhaseCurve, angles: &[f64]) -> serde_json::Value {
     let values: Vec<f64> = angles.iter().map(|angle| curve.value(*angle)).collect();
     let mut object =
         json!({ "phase": curve.name(), "g": curve.mean_cosine(), "angles_deg": angles, "values": values });
@@ -140,9 +121,9 @@ fn object(curve: &Curve, angles: &[f64]) -> serde_json::Value {
     object
 }
 
-fn table(curves: &[Curve], angles: &[f64]) -> String {
-    let width = |curve: &Curve| curve.name().chars().count().max(12) + 2;
-    let line = |name: &str, cell: &dyn Fn(&Curve) -> String| {
+fn table(curves: &[PhaseCurve], angles: &[f64]) -> String {
+    let width = |curve: &PhaseCurve| curve.name().chars().count().max(12) + 2;
+    let line = |name: &str, cell: &dyn Fn(&PhaseCurve) -> String| {
         let cells: String = curves.iter().map(|curve| format!("{:>1$}", cell(curve), width(curve))).collect();
         format!("{name:<10}{cells}\n")
     };

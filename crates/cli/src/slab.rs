@@ -4,11 +4,10 @@ use std::fmt::Write as _;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use glam::DVec3;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 use tyndall_optics::PhaseFunction;
-use tyndall_transport::walk::{Incidence, LayerFluxes, Slab};
+use tyndall_transport::walk::{Incidence, LayerFluxes, Slab, slab_input};
 
 use crate::Done;
 use crate::effort::Effort;
@@ -74,7 +73,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return Err(miette!("--radiance: is not known behind reflecting faces; leave --n away"));
     }
     let phase_function = match &args.phase {
-        Some(spec) => phase::read(spec)?,
+        Some(spec) => phase::phase_function(spec)?,
         None => PhaseFunction::HenyeyGreenstein { g: args.g },
     };
     let slab = Slab {
@@ -84,7 +83,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         incidence: args.incidence,
         refractive_index: args.n,
         ground_albedo: args.ground_albedo,
-        views: views(&args),
+        views: slab_input::views(&args.radiance, args.azimuth, args.tau.is_finite()),
     };
     let cancel = cancel_on_interrupt()?;
     let start = Instant::now();
@@ -100,18 +99,6 @@ pub fn run(args: Args) -> miette::Result<Done> {
         answer(table(&args, &fluxes, seconds))?;
     }
     Ok(if cancel.load(Ordering::Relaxed) { Done::Interrupted } else { Done::All })
-}
-
-/// The directions in which radiance is asked for: all at the top, then, if there is a bottom, all there.
-fn views(args: &Args) -> Vec<DVec3> {
-    let (sin_azimuth, cos_azimuth) = args.azimuth.to_radians().sin_cos();
-    let view = |mu: f64| {
-        let across = (1.0 - mu * mu).sqrt();
-        DVec3::new(across * cos_azimuth, mu, across * sin_azimuth)
-    };
-    let up = args.radiance.iter().map(|&mu| view(mu));
-    let down = args.radiance.iter().map(|&mu| view(-mu)).filter(|_| args.tau.is_finite());
-    up.chain(down).collect()
 }
 
 /// The answer in JSON.
@@ -187,46 +174,34 @@ fn table(args: &Args, fluxes: &LayerFluxes, seconds: f64) -> String {
     text
 }
 
-fn parse_tau(text: &str) -> Result<f64, String> {
-    // Photons would take as many scatterings as the layer is thick.
-    let tau = text.parse().ok().filter(|tau: &f64| (0.0..=1e6).contains(tau) || *tau == f64::INFINITY);
-    tau.ok_or("write a number from 0 to 1e6, or inf".into())
+fn parse_tau(text: &str) -> Result<f64, &'static str> {
+    slab_input::TAU.parse(text)
 }
 
-fn parse_fraction(text: &str) -> Result<f64, String> {
-    number(text, |x| (0.0..=1.0).contains(&x), "write a number from 0 to 1")
+fn parse_fraction(text: &str) -> Result<f64, &'static str> {
+    slab_input::ALBEDO.parse(text)
 }
 
-fn parse_g(text: &str) -> Result<f64, String> {
-    number(text, |g| g > -1.0 && g < 1.0, "write a number between -1 and 1, both excluded")
+fn parse_g(text: &str) -> Result<f64, &'static str> {
+    slab_input::ASYMMETRY.parse(text)
 }
 
-fn parse_index(text: &str) -> Result<f64, String> {
-    number(text, |n| (1.0..=10.0).contains(&n), "write a number from 1 to 10")
+fn parse_index(text: &str) -> Result<f64, &'static str> {
+    slab_input::REFRACTIVE_INDEX.parse(text)
 }
 
-fn parse_mu(text: &str) -> Result<f64, String> {
-    number(text, |mu| (0.001..=1.0).contains(&mu), "write cosines from 0.001 to 1, such as 1,0.5,0.2")
+fn parse_mu(text: &str) -> Result<f64, &'static str> {
+    slab_input::COSINE.parse(text)
 }
 
-fn parse_degrees(text: &str) -> Result<f64, String> {
-    number(text, |degrees| degrees.abs() <= 360.0, "write degrees from -360 to 360")
+fn parse_degrees(text: &str) -> Result<f64, &'static str> {
+    slab_input::AZIMUTH.parse(text)
 }
 
-fn parse_incidence(text: &str) -> Result<Incidence, String> {
-    let degrees = match text {
-        "diffuse" => return Ok(Incidence::Diffuse),
-        "normal" => 0.0,
-        _ => number(
-            text,
-            |degrees| (0.0..=89.9).contains(&degrees),
-            "write normal, diffuse, or degrees off the normal from 0 to 89.9",
-        )?,
-    };
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    Ok(Incidence::Beam(DVec3::new(sin, -cos, 0.0)))
-}
-
-fn number(text: &str, is_allowed: impl Fn(f64) -> bool, mend: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|&x| is_allowed(x)).ok_or_else(|| mend.into())
+fn parse_incidence(text: &str) -> Result<Incidence, &'static str> {
+    match text {
+        "diffuse" => Ok(Incidence::Diffuse),
+        "normal" => slab_input::slanted(0.0),
+        _ => slab_input::slanted(slab_input::INCIDENCE.parse(text)?),
+    }
 }

@@ -4,12 +4,21 @@
 //! examples, stands in `python/tyndall/`.
 
 mod accumulation;
+mod albedo;
 mod array;
+mod effort;
 mod error;
+mod estimators;
+mod interrupt;
+mod meters;
+mod mie;
 mod named;
+mod phase;
 mod pixels;
 mod render;
 mod scene;
+mod slab;
+mod slices;
 mod tree;
 mod units;
 mod volume;
@@ -24,9 +33,23 @@ mod _tyndall {
     #[pymodule_export]
     use crate::accumulation::Accumulation;
     #[pymodule_export]
+    use crate::albedo::albedo_of_reflectance;
+    #[pymodule_export]
+    use crate::estimators::{
+        declared_estimators, estimate_transmittance, optical_thickness, sample_distances,
+    };
+    #[pymodule_export]
+    use crate::meters::meters;
+    #[pymodule_export]
+    use crate::mie::{mie_spheres, refractive_index};
+    #[pymodule_export]
+    use crate::phase::PhaseFunction;
+    #[pymodule_export]
     use crate::render::{Progress, Render, render};
     #[pymodule_export]
     use crate::scene::{Scene, schema};
+    #[pymodule_export]
+    use crate::slab::slabs;
     #[pymodule_export]
     use crate::volume::Volume;
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import pathlib
 import shutil
+import subprocess
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -45,3 +47,15 @@ def command() -> str:
         if shutil.which(path):
             return str(path)
     pytest.skip("the command is not built: cargo build")
+
+
+@pytest.fixture
+def answer(command: str) -> Callable[..., str]:
+    """What the command prints, given its arguments."""
+
+    def run(*arguments: str) -> str:
+        done = subprocess.run([command, *arguments], check=False, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    return run

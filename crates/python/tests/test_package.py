@@ -68,7 +68,20 @@ def test_the_stub_has_all_names_and_no_others() -> None:
     named = stubs()
     public = {name for name in vars(_tyndall) if not name.startswith("_")} | {"__version__"}
     assert set(named) == public
-    ordinary = {"__delitem__", "__radd__", "__module__", "__doc__", "__new__", "__repr__", "__hash__", "__ne__", "__lt__", "__le__", "__gt__", "__ge__"}
+    ordinary = {
+        "__delitem__",
+        "__radd__",
+        "__module__",
+        "__doc__",
+        "__new__",
+        "__repr__",
+        "__hash__",
+        "__ne__",
+        "__lt__",
+        "__le__",
+        "__gt__",
+        "__ge__",
+    }
     for name in public:
         value = getattr(_tyndall, name)
         if isinstance(value, type) and not issubclass(value, BaseException):
@@ -97,8 +110,20 @@ def test_types_are_right(tmp_path: pathlib.Path) -> None:
         "print(picture.image.mean(), picture.layers['Depth'].shape, (picture.accumulation + picture.accumulation).samples)\n"
     )
     checked = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path), "--ignore-missing-imports", str(PACKAGE), str(program)],
-        capture_output=True, text=True, check=False,
+        [
+            sys.executable,
+            "-m",
+            "mypy",
+            "--strict",
+            "--cache-dir",
+            str(tmp_path),
+            "--ignore-missing-imports",
+            str(PACKAGE),
+            str(program),
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
@@ -106,5 +131,7 @@ def test_types_are_right(tmp_path: pathlib.Path) -> None:
 @pytest.mark.skipif(importlib.util.find_spec("ruff") is None, reason="ruff is not installed")
 def test_the_code_is_clean() -> None:
     folders = [str(PACKAGE), str(pathlib.Path(__file__).parent)]
-    checked = subprocess.run([sys.executable, "-m", "ruff", "check", "--no-cache", *folders], capture_output=True, text=True, check=False)
+    checked = subprocess.run(
+        [sys.executable, "-m", "ruff", "check", "--no-cache", *folders], capture_output=True, text=True, check=False
+    )
     assert checked.returncode == 0, checked.stdout

@@ -49,7 +49,9 @@ def test_the_bits_are_those_of_the_command(ball: Ball, command: str) -> None:
         ({"spp": 5, "seed": 7, "threads": 1}, ["--spp", "5", "--seed", "7"]),
         ({"samples": (3, 9)}, ["--samples", "3..9"]),
     ]:
-        subprocess.run([command, "render", "ball.toml", "-o", "a.acc", "-o", "a.exr", *arguments], check=True, capture_output=True)
+        subprocess.run(
+            [command, "render", "ball.toml", "-o", "a.acc", "-o", "a.exr", *arguments], check=True, capture_output=True
+        )
         theirs = tyndall.Accumulation.read("a.acc")
         ours = tyndall.render("ball.toml", progress=False, **options).accumulation
         assert ours == theirs, arguments
@@ -85,7 +87,11 @@ def test_samples_in_parts_are_the_whole(ball: Ball) -> None:
 def test_sums_survive_bytes_pickles_and_files(ball: Ball) -> None:
     sums = tyndall.render(ball, spp=3, progress=False).accumulation
     sums.save("a.acc")
-    for copy in [tyndall.Accumulation.from_bytes(sums.to_bytes()), pickle.loads(pickle.dumps(sums)), tyndall.Accumulation.read("a.acc")]:
+    for copy in [
+        tyndall.Accumulation.from_bytes(sums.to_bytes()),
+        pickle.loads(pickle.dumps(sums)),
+        tyndall.Accumulation.read("a.acc"),
+    ]:
         assert copy == sums and copy.seconds == sums.seconds
 
 
@@ -180,7 +186,9 @@ def test_ctrl_c_returns_what_there_is_with_a_warning(endless: Ball) -> None:
         print(not picture.complete, 0 < picture.samples < 100_000, "interrupted after" in str(caught[0].message))
         print(time.monotonic() - pressed[0])
     """
-    done = subprocess.run([sys.executable, "-c", textwrap.dedent(program)], check=True, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(program)], check=True, capture_output=True, text=True, timeout=120
+    )
     told, seconds = done.stdout.splitlines()
     assert told == "True True True"
     assert float(seconds) < 10

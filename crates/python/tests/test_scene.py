@@ -33,7 +33,10 @@ def test_a_dictionary_is_the_same_scene_as_its_text(ball: Ball) -> None:
 def test_lists_may_be_single_objects_or_dictionaries_by_name(ball: Ball) -> None:
     expected = tyndall.Scene(ball).hash
     assert tyndall.Scene({**ball, "volume": ball["volume"][0], "light": ball["light"][0]}).hash == expected
-    assert tyndall.Scene({**ball, "volume": {"smoke": ball["volume"][0]}, "light": {"sun": ball["light"][0]}}).hash == expected
+    assert (
+        tyndall.Scene({**ball, "volume": {"smoke": ball["volume"][0]}, "light": {"sun": ball["light"][0]}}).hash
+        == expected
+    )
     scene = tyndall.Scene({"type": "scene", **ball, "volume": {"smoke": ball["volume"][0]}})
     assert scene.hash == expected and scene["volume.0.name"] == "smoke"
 
@@ -64,9 +67,7 @@ def test_values_are_read_and_changed_by_their_path(ball: Ball) -> None:
 
 def test_what_is_wrong_is_told_by_its_keys(ball: Ball) -> None:
     ball["volume"][0]["albdeo"] = ball["volume"][0].pop("albedo")
-    assert refusal(ball) == (
-        "volume.0.albdeo: unknown key `albdeo` in [[volume]], did you mean `albedo`?"
-    )
+    assert refusal(ball) == ("volume.0.albdeo: unknown key `albdeo` in [[volume]], did you mean `albedo`?")
     assert "the scene lacks [camera]" in refusal({})
     assert refusal({"camera": {"position": [0, 0, float("nan")], "target": [0, 0, 0]}}).startswith(
         "camera.position: `position[2]` must be finite"
@@ -82,7 +83,9 @@ def test_what_is_wrong_is_told_by_its_keys(ball: Ball) -> None:
 
 def test_a_file_that_is_wrong_is_told_as_the_command_does(ball: Ball) -> None:
     pathlib.Path("a.toml").write_text("camera = { position = [0, 0, 5], traget = [0, 0, 0] }\n")
-    with pytest.raises(tyndall.Error, match=r"a.toml:1:34: unknown key `traget` in \[camera\], did you mean `target`\?"):
+    with pytest.raises(
+        tyndall.Error, match=r"a.toml:1:34: unknown key `traget` in \[camera\], did you mean `target`\?"
+    ):
         tyndall.load("a.toml")
     with pytest.raises(OSError, match="there is no such file"):
         tyndall.load("none.toml")

@@ -17,8 +17,11 @@ def test_lengths_coefficients_and_angles_are_in_units_of_the_scene(ball: Ball) -
     ball["volume"] = [
         {"sphere": {"center": [0, 0, 0], "radius": "10 mm"}, "mu_t": "0.2 1/mm", "albedo": 0.8},
         {"box": {"min": ["-1e-2 m"] * 3, "max": ["1cm"] * 3}, "mu_a": ["100 /m", "1 cm^-1", "1/cm"], "mu_s": "3e2 m-1"},
-        {"box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "mean_free_path": {"wavelengths": [450, 650], "values": ["1 mm", "2 mm"]},
-         "albedo": 1},
+        {
+            "box": {"min": [0, 0, 0], "max": [1, 1, 1]},
+            "mean_free_path": {"wavelengths": [450, 650], "values": ["1 mm", "2 mm"]},
+            "albedo": 1,
+        },
     ]
     scene = tyndall.Scene(ball)
     assert scene["camera.position"] == [0, 0, 4] and scene["camera.vertical_fov"] == pytest.approx(35)
@@ -42,7 +45,7 @@ def test_lengths_coefficients_and_angles_are_in_units_of_the_scene(ball: Ball) -
         ("volume.0.mu_t", "inf 1/m", "is no number"),
         ("volume.0.mu_t", "1e308 1/nm", "is too large a number"),
         ("volume.0.mu_t", "1 mm^99", "`mm^99` is no unit"),
-        ("camera.vertical_fov", "3 m", "camera.vertical_fov: \"3 m\" is not an angle, such as \"30 deg\""),
+        ("camera.vertical_fov", "3 m", 'camera.vertical_fov: "3 m" is not an angle, such as "30 deg"'),
         ("volume.0.albedo", "0.5 m", "`albedo` must be"),
     ],
 )

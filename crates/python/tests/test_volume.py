@@ -94,7 +94,7 @@ def test_later_changes_of_the_array_do_not_change_the_volume(blob: np.ndarray) -
         (np.zeros((2, 2, 2)), {"spacing": 0}, "spacing: must be above 0"),
         (np.zeros((2, 2, 2)), {"spacing": (1, 2)}, "spacing: give a length, or three"),
         (np.zeros((2, 2, 2)), {"spacing": float("nan")}, "spacing: give a length"),
-        (np.zeros((2, 2, 2)), {"spacing": "3 kg"}, "spacing: \"3 kg\": `kg` is no unit of length or angle"),
+        (np.zeros((2, 2, 2)), {"spacing": "3 kg"}, 'spacing: "3 kg": `kg` is no unit of length or angle'),
         (np.zeros((2, 2, 2)), {"spacing": "1 mm", "origin": 1}, "give both as lengths with units"),
         (np.zeros((2, 2, 2)), {"index_to_world": np.zeros((4, 4))}, "index_to_world: give a 4x4 matrix"),
         (np.zeros((2, 2, 2)), {"index_to_world": np.eye(4), "spacing": 1}, "says spacing and origin too"),

@@ -143,7 +143,7 @@ fn build_substance(choice: &SubstanceChoice, folder: &Path) -> Result<Substance,
     Ok(Substance::Table(path.display().to_string(), table))
 }
 
-fn mie_error(error: MieError) -> SceneError {
+pub(crate) fn mie_error(error: MieError) -> SceneError {
     refusal(error.to_string())
 }
 

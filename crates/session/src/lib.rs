@@ -37,6 +37,8 @@ mod input;
 mod job;
 mod output;
 mod picture;
+mod readings;
+mod readings_report;
 mod volume_file;
 
 pub use checkpoint::Checkpoint;
@@ -47,4 +49,6 @@ pub use input::{Input, InputOptions, ReadyScene};
 pub use job::{Job, JobOptions};
 pub use output::{Output, check_writable, write_all};
 pub use picture::colours;
+pub use readings::{Reading, read_meters};
+pub use readings_report::readings_report;
 pub use volume_file::{RawVolume, check_input, read_volume};

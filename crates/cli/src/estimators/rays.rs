@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use miette::miette;
-use tyndall_scene::{Light, Ray, Scene};
-use tyndall_transport::along_ray::LightBeside;
+use tyndall_scene::{Ray, Scene};
 use tyndall_transport::{AlongRay, Lookups};
 
 /// A ray with what it meets.
@@ -117,12 +116,7 @@ impl<'a> ChosenRay<'a> {
         if optical_thickness.is_nan() || optical_thickness <= 0.0 {
             return None;
         }
-        let light = point_light(scene).map(|position| LightBeside::new(&ray, position));
-        let along = match light.filter(|light| light.distance > 1e-6 * (along.end() - along.start())) {
-            Some(light) => along.with_light(light),
-            None => along,
-        };
-        Some(Self { pixel, ray, along, optical_thickness })
+        Some(Self { pixel, ray, along: along.with_point_light_of(scene, &ray), optical_thickness })
     }
 
     /// The ray up to where its optical thickness is `most`.
@@ -131,14 +125,6 @@ impl<'a> ChosenRay<'a> {
         let cut = end.and_then(|end| Self::new(scene, self.pixel, self.ray, end));
         cut.unwrap_or_else(|| Self { along: self.along.clone(), ..*self })
     }
-}
-
-/// The first of the scene's point lights.
-fn point_light(scene: &Scene) -> Option<DVec3> {
-    scene.lights.iter().find_map(|light| match light {
-        Light::Point(point) => Some(point.position()),
-        _ => None,
-    })
 }
 
 /// `--pixel X,Y`

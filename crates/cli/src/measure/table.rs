@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use tyndall_scene::description::MeterDescription;
+use tyndall_session::Reading;
 use tyndall_transport::Measurement;
 use tyndall_transport::walk::{BodyPowers, LayerFluxes};
 
-use super::Reading;
 use crate::measured::with_error;
 
 /// One reading; columns are left to JSON.

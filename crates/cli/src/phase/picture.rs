@@ -1,10 +1,11 @@
 //! Phase functions as a picture: a polar diagram, and the values over the angle.
 
-use super::curve::Curve;
+use tyndall_scene::PhaseCurve;
+
 use crate::plot::{Anchor, Axes, COLOURS, Kind, Polar, Svg, legend};
 
 /// Draws the curves; `radius` is the kind of scale of the polar diagram.
-pub fn draw(curves: &[Curve], radius: Kind) -> String {
+pub fn draw(curves: &[PhaseCurve], radius: Kind) -> String {
     let lines: Vec<Vec<(f64, f64)>> = curves
         .iter()
         .map(|curve| angles().into_iter().map(|angle| (angle, curve.value(angle))).collect())

@@ -18,9 +18,12 @@ A scene is a dictionary with the keys of a scene file, and a volume is a NumPy a
 True
 """
 
+from tyndall import estimators, measure, phase
 from tyndall._errors import Error, FileError
 from tyndall._render import load, render
 from tyndall._tyndall import Accumulation, Progress, Render, Scene, Volume, __version__, schema
+from tyndall.transfer_function import TransferFunction
+from tyndall.volume_scene import render_volume, volume_scene
 
 __all__ = [
     "Accumulation",
@@ -29,9 +32,15 @@ __all__ = [
     "Progress",
     "Render",
     "Scene",
+    "TransferFunction",
     "Volume",
     "__version__",
+    "estimators",
     "load",
+    "measure",
+    "phase",
     "render",
+    "render_volume",
     "schema",
+    "volume_scene",
 ]

@@ -13,7 +13,19 @@ if TYPE_CHECKING:
     import xarray
 
 AXES = ("x", "y", "z")
-METRES = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9}
+METRES = {
+    "m": 1.0,
+    "metre": 1.0,
+    "metres": 1.0,
+    "meter": 1.0,
+    "meters": 1.0,
+    "km": 1e3,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "µm": 1e-6,
+    "nm": 1e-9,
+}
 """Names of units that coordinates have in their attribute `units`."""
 
 
@@ -61,7 +73,9 @@ def _steps(data: xarray.DataArray, axis: str) -> tuple[float, float, bool]:
         raise Error(f"the coordinates along {axis} are no numbers; {mend}")
     places = places.astype(float)
     if len(places) < 2:
-        raise Error(f"there is a single coordinate along {axis}, which says no spacing; give spacing and origin as well")
+        raise Error(
+            f"there is a single coordinate along {axis}, which says no spacing; give spacing and origin as well"
+        )
     step = (places[-1] - places[0]) / (len(places) - 1)
     even = places[0] + step * np.arange(len(places))
     # Coordinates are often rounded to 32 bits.

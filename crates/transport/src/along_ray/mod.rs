@@ -19,9 +19,10 @@ mod voxels;
 
 use std::ops::ControlFlow;
 
-use tyndall_scene::{Ray, Volume};
+use tyndall_lanes::Random;
+use tyndall_scene::{Light, Ray, Scene, Volume};
 
-use crate::way::Span;
+use crate::way::{Span, Way};
 
 pub use bounding::{Bounding, Control, Extent, Piece};
 pub use profile::Profile;
@@ -69,6 +70,17 @@ impl<'a> AlongRay<'a> {
         Self::through_spans(volumes, &Span::everywhere(volumes.len(), end), ray)
     }
 
+    /// What `ray`, of unit direction, meets of the media of `scene` before the distance `end` and before the first surface
+    /// that stops it; `None` if it meets nothing. A surface that lets a part of the light pass is drawn once, always alike.
+    pub fn through_scene(scene: &'a Scene, ray: &Ray, end: f64) -> Option<Self> {
+        if scene.surfaces.is_empty() {
+            return Self::through(&scene.volumes, ray, end);
+        }
+        let presence = scene.boundaries.presence_at(ray.origin, &scene.surfaces);
+        let way = Way::trace(scene, ray, end, &presence, &mut Random::new(0, 0, 0));
+        Self::through_spans(&scene.volumes, &way.spans, ray)
+    }
+
     /// What `ray` meets of the volumes where they are present.
     pub(crate) fn through_spans(volumes: &'a [Volume], spans: &[Span], ray: &Ray) -> Option<Self> {
         let mut stretches = spans.iter().filter_map(|span| {
@@ -103,6 +115,19 @@ impl<'a> AlongRay<'a> {
     #[must_use]
     pub fn with_light(self, light: LightBeside) -> Self {
         Self { light: Some(light), ..self }
+    }
+
+    /// The same with the first of the scene's point lights, unless the ray all but meets it.
+    #[must_use]
+    pub fn with_point_light_of(self, scene: &Scene, ray: &Ray) -> Self {
+        let position = scene.lights.iter().find_map(|light| match light {
+            Light::Point(point) => Some(point.position()),
+            _ => None,
+        });
+        match position.map(|position| LightBeside::new(ray, position)) {
+            Some(light) if light.distance > 1e-6 * (self.end() - self.start()) => self.with_light(light),
+            _ => self,
+        }
     }
 
     /// How the bounds are made.

@@ -15,6 +15,7 @@ mod layer;
 mod photon;
 mod run;
 mod slab;
+pub mod slab_input;
 mod tally;
 
 pub use backward::{LightMeter, LightMeterKind};

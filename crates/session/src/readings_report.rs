@@ -5,10 +5,10 @@ use tyndall_scene::description::MeterDescription;
 use tyndall_transport::Measurement;
 use tyndall_transport::walk::{BodyPowers, Estimate, LayerFluxes};
 
-use super::Reading;
+use crate::Reading;
 
-/// All readings.
-pub fn report(readings: &[Reading]) -> Json {
+/// All readings, by name.
+pub fn readings_report(readings: &[Reading]) -> Json {
     let mut root = Map::new();
     if let [Reading { measurement: Measurement::Layer(_), .. }] = readings {
         root = of_one(&readings[0]);
