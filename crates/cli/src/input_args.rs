@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use tyndall_session::{ImportOptions, Input, InputOptions, RawVolume, SessionError};
+use miette::miette;
+use tyndall_session::{Frames, ImportOptions, Input, InputOptions, RawVolume, SessionError};
 use tyndall_volumes::Element;
 
 /// Shape and type of a `.raw` file.
@@ -50,8 +51,27 @@ pub fn open(
     import: &ImportArgs,
 ) -> Result<Input, SessionError> {
     let Some(path) = path else { return Input::built_in(overrides) };
-    let options = InputOptions { overrides: overrides.to_vec(), raw: raw.volume(), import: import.options() };
-    Input::open(path, &options)
+    Input::open(path, &options(overrides, raw, import, None))
+}
+
+/// Opens `path` at the first of some frames.
+pub fn open_frames(
+    path: Option<&Path>,
+    overrides: &[String],
+    raw: &RawArgs,
+    import: &ImportArgs,
+    frames: Frames,
+) -> miette::Result<Input> {
+    let Some(path) = path else {
+        return Err(miette!(
+            "--frames: the built-in scene has one picture; name a scene or a volume such as smoke.####.vdb"
+        ));
+    };
+    Ok(Input::open(path, &options(overrides, raw, import, Some(frames.first())))?)
+}
+
+fn options(overrides: &[String], raw: &RawArgs, import: &ImportArgs, frame: Option<u32>) -> InputOptions {
+    InputOptions { overrides: overrides.to_vec(), raw: raw.volume(), import: import.options(), frame }
 }
 
 fn shape(text: &str) -> Result<[u32; 3], String> {

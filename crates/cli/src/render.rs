@@ -1,37 +1,41 @@
 //! `tyndall render`: a scene or a volume becomes a picture with its error.
 
+mod animation;
 mod estimators;
+mod picture;
 mod progress;
 pub mod stop;
 
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use miette::{IntoDiagnostic, miette};
-use tyndall_film::{Accumulation, Colours};
+use miette::miette;
+use tyndall_film::Colours;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::observers;
-use tyndall_session::{Checkpoint, Input, Job, JobOptions, Output, check_writable, colours, write_all};
-use tyndall_transport::{Control, Outcome, counters};
+use tyndall_session::{Frames, Input, Job, JobOptions, Output, check_writable, colours};
+use tyndall_transport::Control;
 
 use crate::Done;
-use crate::input_args::{ImportArgs, RawArgs, open};
+use crate::input_args::{ImportArgs, RawArgs, open, open_frames};
+use crate::interrupt::stop_on_interrupt;
 use crate::terminal::{answer, tell};
 use estimators::EstimatorArgs;
-use progress::{Progress, ProgressStyle};
-use stop::GoalArgs;
+use picture::Target;
+use progress::ProgressStyle;
+use stop::{GoalArgs, parse_time};
 
-/// Time between two checkpoints.
-const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+/// Time between two checkpoints if nothing else is asked for.
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
 /// Render a scene file or a volume file to a picture with its error
 ///
 /// A volume file (.vdb .nvdb .vol .npy .nii .raw) needs no scene: camera, sun, sky and density are chosen from the
 /// data; --print-scene shows the choices as a scene file.
 #[derive(Debug, Clone, clap::Args)]
+#[command(group = clap::ArgGroup::new("resumable").multiple(true))]
 #[command(after_help = "\
 Examples:
   tyndall render smoke.vdb                          smoke.exr and smoke.png, 64 samples a pixel
@@ -39,7 +43,8 @@ Examples:
   tyndall render smoke.vdb --print-scene > smoke.toml
   tyndall render smoke.toml -o smoke.exr --error 1% --time 10min     until either is reached
   tyndall render smoke.toml -o part.acc --samples 64..128            a share of the work, for `tyndall merge`
-  tyndall render smoke.toml -o smoke.exr --checkpoint smoke.acc --resume")]
+  tyndall render smoke.toml -o smoke.exr --checkpoint smoke.acc --resume
+  tyndall render 'smoke.####.vdb' --frames 1..240 -o 'smoke.####.exr' --resume")]
 pub struct Args {
     /// Scene file (.toml, or .pbrt and Mitsuba's .xml) or volume file; the built-in cumulus if left out
     input: Option<PathBuf>,
@@ -75,12 +80,22 @@ pub struct Args {
     sampler: Option<Sampler>,
     #[command(flatten)]
     estimators: EstimatorArgs,
-    /// Save the exact sums here every minute and at the end, for --resume
-    #[arg(long, value_name = "FILE.acc")]
+    /// Save the exact sums here every now and then and at the end, for --resume
+    #[arg(long, value_name = "FILE.acc", group = "resumable")]
     checkpoint: Option<PathBuf>,
-    /// Go on from the checkpoint, if it exists
-    #[arg(long, requires = "checkpoint")]
+    /// How often the checkpoint is saved, such as 30s or 10min; between passes of a sample a pixel at least
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_time, requires = "checkpoint")]
+    checkpoint_every: Duration,
+    /// Go on from the checkpoint, if it exists; with --frames, skip frames whose pictures are there
+    #[arg(long, requires = "resumable")]
     resume: bool,
+    /// Render an animation: the frames A to B, both included, or every STEP-th of them, or a single one
+    ///
+    /// #### in the input, in `file` keys of the scene, in --set and in names of outputs is the frame's number, padded with
+    /// zeros; outputs without it get .0001 before the extension. Camera, light and density of a bare volume are chosen from
+    /// the first frame. All frames have the same seed, unless --set render.seed=# says otherwise; --time is for each frame.
+    #[arg(long, value_name = "A..B[:STEP]", group = "resumable")]
+    frames: Option<Frames>,
     /// How to report progress
     #[arg(long, value_enum, default_value_t)]
     progress: ProgressStyle,
@@ -110,6 +125,8 @@ impl Args {
             sampler: None,
             estimators: EstimatorArgs::default(),
             checkpoint: None,
+            checkpoint_every: CHECKPOINT_EVERY,
+            frames: None,
             resume: false,
             progress: ProgressStyle::default(),
             print_scene: false,
@@ -121,7 +138,12 @@ impl Args {
 
 /// Opens, builds, renders, writes.
 pub fn run(args: Args) -> miette::Result<Done> {
-    let input = open(args.input.as_deref(), &overrides(&args), &args.raw, &args.import)?;
+    let input = match args.frames {
+        Some(frames) => {
+            open_frames(args.input.as_deref(), &overrides(&args), &args.raw, &args.import, frames)?
+        }
+        None => open(args.input.as_deref(), &overrides(&args), &args.raw, &args.import)?,
+    };
     let description = input.description();
     if args.resolution.is_some() && description.film.crop.is_some() {
         return Err(miette!(
@@ -133,30 +155,34 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return print_scene(&input).map(|()| Done::All);
     }
     args.estimators.check(description.render.integrator)?;
+    if let Some(frames) = args.frames {
+        return animation::run(&args, input, frames);
+    }
     let outputs = outputs(&args, &input)?;
-    let options = JobOptions { threads: args.threads.map(usize::from), estimators: args.estimators.chosen() };
-    let mut job = Job::new(&input, &options)?;
+    check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
+    let job = Job::new(&input, &job_options(&args))?;
     job.notes().iter().for_each(|note| tell(format!("note: {note}")));
-    if args.integrator.is_none() && args.estimators.integrator().is_some() {
-        tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
-    }
-    let mut checkpoint = open_checkpoint(&args, &mut job)?;
-    let end = render(&args, description.render.spp, &mut job, checkpoint.as_mut())?;
-
-    let pictures = job.pictures();
-    if pictures.iter().any(|picture| picture.film.mean_sample_count() == 0.0) {
-        tell("interrupted before all was rendered once; nothing is written");
-        return Ok(end);
-    }
-    let exposure = args.exposure.unwrap_or(description.film.exposure) as f32;
-    let saved = checkpoint.map_or(Ok(()), |mut checkpoint| checkpoint.save(&pictures[0]));
-    write_all(&outputs, pictures, exposure)?;
-    saved.into_diagnostic()?;
-    report(pictures, &outputs, &end);
-    Ok(end)
+    args.estimators.tell_integrator(args.integrator);
+    let control = Arc::new(Control::default());
+    stop_on_interrupt(&control)?;
+    let target = Target {
+        outputs,
+        exposure: args.exposure.unwrap_or(description.film.exposure) as f32,
+        checkpoint: args.checkpoint,
+        checkpoint_every: args.checkpoint_every,
+        resume: args.resume,
+        progress: args.progress,
+        frame: None,
+    };
+    let plan = args.goal.with_samples(args.samples).plan(description.render.spp);
+    target.render(job, &plan, &control)
 }
 
-/// The files to write, once it is known that they can hold the picture and be written.
+fn job_options(args: &Args) -> JobOptions {
+    JobOptions { threads: args.threads.map(usize::from), estimators: args.estimators.chosen() }
+}
+
+/// The files to write, once it is known that they can hold the picture.
 fn outputs(args: &Args, input: &Input) -> miette::Result<Vec<Output>> {
     let observers = observers(input.description());
     let colours = colours(observers[0]);
@@ -170,7 +196,6 @@ fn outputs(args: &Args, input: &Input) -> miette::Result<Vec<Output>> {
             "--checkpoint: an .acc file holds at most three bands; give fewer in film.bands"
         ));
     }
-    check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
     Ok(outputs)
 }
 
@@ -180,21 +205,6 @@ fn default_outputs(stem: &str, colours: &Colours) -> Vec<Output> {
         .iter()
         .filter_map(|extension| format!("{stem}{extension}").parse().ok())
         .collect()
-}
-
-/// The checkpoint that is asked for; the job goes on from it if it is there.
-fn open_checkpoint(args: &Args, job: &mut Job) -> miette::Result<Option<Checkpoint>> {
-    let Some(path) = &args.checkpoint else { return Ok(None) };
-    if path.exists() {
-        if !args.resume {
-            return Err(miette!(
-                "{}: exists already; add --resume to go on from it, or name another file",
-                path.display()
-            ));
-        }
-        job.resume(path)?;
-    }
-    Ok(Some(Checkpoint::new(path, CHECKPOINT_INTERVAL)))
 }
 
 /// `--print-scene`: what is not as in the renderer that the scene is for is told as well.
@@ -232,69 +242,6 @@ fn sampler_name(sampler: Sampler) -> &'static str {
     match sampler {
         Sampler::Independent => "independent",
         Sampler::Sobol => "sobol",
-    }
-}
-
-/// Renders until the goal is reached or Ctrl-C is pressed.
-fn render(
-    args: &Args,
-    scene_spp: u32,
-    job: &mut Job,
-    mut checkpoint: Option<&mut Checkpoint>,
-) -> miette::Result<Done> {
-    let control = Arc::new(Control::default());
-    stop_on_interrupt(&control)?;
-    let plan = args.goal.with_samples(args.samples.clone()).plan(scene_spp);
-    let progress = Progress::start(args.progress, job.pixels(), plan.spp(), Arc::clone(&control));
-    let outcome = job.run(&plan, &control, |pictures| {
-        progress.pass_done(&pictures[0].film);
-        if let Some(checkpoint) = &mut checkpoint {
-            // The next may go well, and the picture itself is not lost.
-            if let Err(error) = checkpoint.save_if_due(&pictures[0]) {
-                tell(format!("note: no checkpoint: {error}"));
-            }
-        }
-    });
-    progress.finish();
-    if counters::COUNTED {
-        tell(format!("counters: {}", control.counters.counters().json()));
-    }
-    Ok(match outcome? {
-        Outcome::Complete => Done::All,
-        Outcome::Cancelled => Done::Interrupted,
-    })
-}
-
-/// The first Ctrl-C ends the render, which saves what there is; the second ends the program.
-fn stop_on_interrupt(control: &Arc<Control>) -> miette::Result<()> {
-    let control = Arc::clone(control);
-    ctrlc::set_handler(move || {
-        if control.cancel.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    })
-    .into_diagnostic()
-}
-
-fn report(pictures: &[Accumulation], outputs: &[Output], end: &Done) {
-    let film = &pictures[0].film;
-    let error = film.median_relative_error().filter(|error| error.is_finite());
-    let error = error.map_or("error not known yet".into(), |e| format!("median error {:.2} %", 100.0 * e));
-    let interrupted = if matches!(end, Done::Interrupted) { "interrupted: " } else { "" };
-    let samples = film.mean_sample_count();
-    let samples = if samples.fract() == 0.0 { format!("{samples}") } else { format!("{samples:.2}") };
-    tell(format!(
-        "{interrupted}{}x{}, {samples} samples a pixel, {error}, {:.1} s",
-        film.width(),
-        film.height(),
-        pictures.iter().map(|picture| picture.metadata.seconds).fold(0.0, f64::max)
-    ));
-    let rejected: u64 = pictures.iter().map(|picture| picture.film.rejected()).sum();
-    if rejected > 0 {
-        tell(format!("note: {rejected} samples were not finite or too large and count as black"));
-    }
-    for output in outputs {
-        tell(format!("wrote {}", output.path().display()));
     }
 }
 

@@ -17,21 +17,24 @@
 //! transposed, all first bytes of its records, then all second ones: the high bytes of neighbouring sums are equal, most
 //! of them zero, and compress well.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use crate::atomic_write::write_atomically;
 use crate::error::FileError;
-use crate::film::{Film, MergeError, OpenPass, pixel_count, tile_count};
+use crate::film::{Film, OpenPass, pixel_count, tile_count};
 use crate::fixed_point::MAX_SAMPLES;
 use crate::metadata::ImageMetadata;
 use crate::plane_codec::{decode_plane, encode_plane};
-use crate::ranges::{RangeError, SampleRanges};
+use crate::provenance::Provenance;
+use crate::ranges::SampleRanges;
 use crate::sample::Layers;
 use crate::sums::Sums;
 
+const DAMAGED: &str = "is damaged or cut short; copy it again or render its samples anew";
+const NOT_ONE: &str = "is no .acc file of tyndall";
 const MAGIC: &[u8; 8] = b"TYNDALL\x1a";
 const VERSION: u32 = 2;
 /// The oldest version that is read.
@@ -110,40 +113,19 @@ impl Accumulation {
 
     /// Adds the samples of `other`. The paths only serve to name both in an error; nothing changes on error.
     pub fn merge(&mut self, path: &Path, other: &Self, other_path: &Path) -> Result<(), FileError> {
-        let refuse = |what: String| FileError::unusable(other_path, what);
-        let (mine, theirs) = (&self.metadata, &other.metadata);
-        for (name, a, b) in [
-            ("scene", &mine.scene_hash, &theirs.scene_hash),
-            ("version of tyndall", &mine.version, &theirs.version),
-            ("options", &mine.options, &theirs.options),
-            ("seed", &mine.seed.to_string(), &theirs.seed.to_string()),
-        ] {
-            if a != b {
-                return Err(refuse(format!(
-                    "cannot be merged with {}: another {name} (`{b}`, not `{a}`); only renders of one scene with \
-                     the same seed and options add up",
-                    path.display()
-                )));
-            }
-        }
-        self.film.merge(&other.film).map_err(|error| match error {
-            MergeError::Ranges(RangeError::Overlap(common)) => refuse(format!(
-                "cannot be merged with {}: both hold samples {}..{}; leave one of them out",
-                path.display(),
-                common.start,
-                common.end
-            )),
-            MergeError::Incomplete(start) => {
-                let open = if self.film.open_start().is_some() { path } else { other_path };
-                FileError::unusable(
-                    open,
-                    format!("was interrupted in the pass that begins at sample {start}; resume it to its end first"),
-                )
-            }
-            error => refuse(format!("cannot be merged with {}: {error}", path.display())),
+        self.provenance().join(path, &other.provenance(), other_path)?;
+        self.film.merge(&other.film).map_err(|error| {
+            FileError::unusable(other_path, format!("cannot be merged with {}: {error}", path.display()))
         })?;
         self.metadata.seconds += other.metadata.seconds;
         Ok(())
+    }
+
+    /// How the samples were made, and which they are.
+    pub fn provenance(&self) -> Provenance {
+        let ImageMetadata { scene_hash, version, options, seed, .. } = self.metadata.clone();
+        let samples = self.film.complete().clone();
+        Provenance { scene_hash, version, options, seed, samples, open: self.film.open_start() }
     }
 
     fn encode(&self, file: &mut impl Write) -> io::Result<()> {
@@ -195,9 +177,8 @@ impl Accumulation {
     }
 
     fn decode(bytes: &[u8]) -> Result<Self, String> {
-        const DAMAGED: &str = "is damaged or cut short; copy it again or render its samples anew";
         if !bytes.starts_with(MAGIC) {
-            return Err("is no .acc file of tyndall".into());
+            return Err(NOT_ONE.into());
         }
         let (content, checksum) = bytes.split_last_chunk::<4>().ok_or(DAMAGED)?;
         let mut crc = flate2::Crc::new();
@@ -206,13 +187,7 @@ impl Accumulation {
             return Err(DAMAGED.into());
         }
         let (version, rest) = content[MAGIC.len()..].split_first_chunk().ok_or(DAMAGED)?;
-        let version = u32::from_le_bytes(*version);
-        if !(OLDEST_VERSION..=VERSION).contains(&version) {
-            return Err(format!(
-                "has version {version} of the .acc format, and this program reads versions {OLDEST_VERSION} to \
-                 {VERSION}; use the program that wrote it"
-            ));
-        }
+        check_version(u32::from_le_bytes(*version))?;
         let (length, rest) = rest.split_first_chunk().ok_or(DAMAGED)?;
         let (json, mut blocks) =
             rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(DAMAGED)?;
@@ -222,6 +197,64 @@ impl Accumulation {
             return Err(format!("has {} bytes too many after its sums", blocks.len()));
         }
         Ok(Self { film, metadata: header.metadata })
+    }
+}
+
+fn check_version(version: u32) -> Result<(), String> {
+    if (OLDEST_VERSION..=VERSION).contains(&version) {
+        return Ok(());
+    }
+    Err(format!(
+        "has version {version} of the .acc format, and this program reads versions {OLDEST_VERSION} to {VERSION}; use \
+         the program that wrote it"
+    ))
+}
+
+/// What an `.acc` file says of its making, once it is known to be undamaged. Takes no memory for the sums.
+///
+/// # Errors
+/// If the file cannot be read, is damaged or is of another format.
+pub(crate) fn read_provenance(path: &Path) -> Result<Provenance, FileError> {
+    let refuse = |what: String| FileError::unusable(path, what);
+    let io = |error| FileError::io(path, error);
+    let file = std::fs::File::open(path).map_err(io)?;
+    let length = file.metadata().map_err(io)?.len();
+    let mut file = ChecksumReader { inner: io::BufReader::new(file), crc: flate2::Crc::new() };
+    let mut start = [0; 16];
+    let begins = file.read_exact(&mut start).is_ok();
+    if !begins || !start.starts_with(MAGIC) {
+        return Err(refuse(NOT_ONE.into()));
+    }
+    let word = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|i| start[at + i]));
+    check_version(word(8)).map_err(refuse)?;
+    let mut json = Vec::new();
+    file.by_ref().take(u64::from(word(12))).read_to_end(&mut json).map_err(io)?;
+    let rest = length.checked_sub(20 + json.len() as u64).ok_or_else(|| refuse(DAMAGED.into()))?;
+    io::copy(&mut file.by_ref().take(rest), &mut io::sink()).map_err(io)?;
+    let sum = file.crc.sum();
+    let mut checksum = [0; 4];
+    file.inner.read_exact(&mut checksum).map_err(|_| refuse(DAMAGED.into()))?;
+    if sum != u32::from_le_bytes(checksum) {
+        return Err(refuse(DAMAGED.into()));
+    }
+    let header: Header =
+        serde_json::from_slice(&json).map_err(|error| refuse(format!("has a bad header: {error}")))?;
+    let ImageMetadata { scene_hash, version, options, seed, .. } = header.metadata;
+    let open = header.open.map(|pass| pass.start);
+    Ok(Provenance { scene_hash, version, options, seed, samples: header.samples, open })
+}
+
+/// Reads bytes and keeps their checksum.
+struct ChecksumReader<R> {
+    inner: R,
+    crc: flate2::Crc,
+}
+
+impl<R: Read> Read for ChecksumReader<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let length = self.inner.read(bytes)?;
+        self.crc.update(&bytes[..length]);
+        Ok(length)
     }
 }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
+use std::str::FromStr;
 
 use crate::fixed_point::MAX_SAMPLES;
 
@@ -58,6 +59,22 @@ impl SampleRanges {
         Ok(())
     }
 
+    /// The ranges of `0..end` that are not held.
+    pub fn missing(&self, end: u64) -> Self {
+        let mut missing = Vec::new();
+        let mut next = 0;
+        for held in &self.0 {
+            if next < held.start.min(end) {
+                missing.push(next..held.start.min(end));
+            }
+            next = held.end;
+        }
+        if next < end {
+            missing.push(next..end);
+        }
+        Self(missing)
+    }
+
     fn normalised(mut ranges: Vec<Range<u64>>) -> Result<Self, RangeError> {
         if let Some(backwards) = ranges.iter().find(|r| r.end < r.start) {
             return Err(RangeError::Backwards(backwards.start, backwards.end));
@@ -97,6 +114,25 @@ impl fmt::Display for SampleRanges {
     }
 }
 
+impl FromStr for SampleRanges {
+    type Err = String;
+
+    /// The reverse of its display.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let range = |text: &str| {
+            let (start, end) = text.split_once("..")?;
+            Some((start.parse().ok()?, end.parse().ok()?))
+        };
+        let ranges = match text {
+            "none" => Some(Vec::new()),
+            text => text.split(',').map(range).collect::<Option<Vec<(u64, u64)>>>(),
+        };
+        let ranges =
+            ranges.ok_or_else(|| format!("`{text}` are no ranges of samples such as 0..64,128..192"))?;
+        Self::try_from(ranges).map_err(|error| error.to_string())
+    }
+}
+
 impl TryFrom<Vec<(u64, u64)>> for SampleRanges {
     type Error = RangeError;
 
@@ -125,6 +161,28 @@ mod tests {
         assert_eq!(ranges(&[(64, 128), (0, 64)]), whole);
         assert_eq!(ranges(&[(0, 10), (100, 128), (10, 100), (5, 5)]), whole);
         assert_eq!(ranges(&[(0, 1), (2, 3)]).map(|r| r.to_string()), Ok("0..1,2..3".to_string()));
+    }
+
+    #[test]
+    fn ranges_are_read_as_they_are_shown() {
+        for pairs in [&[][..], &[(0, 64)], &[(3, 7), (9, 12)]] {
+            let shown = ranges(pairs).unwrap().to_string();
+            assert_eq!(shown.parse(), Ok(ranges(pairs).unwrap()), "{shown}");
+        }
+        for wrong in ["", "0", "0..", "5..3", "0..4,2..6", "a..b"] {
+            assert!(wrong.parse::<SampleRanges>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_is_missing_completes_the_whole() {
+        let missing = |held: &[(u64, u64)], end| ranges(held).unwrap().missing(end).to_string();
+        assert_eq!(missing(&[], 8), "0..8");
+        assert_eq!(missing(&[(2, 4), (6, 7)], 10), "0..2,4..6,7..10");
+        assert_eq!(missing(&[(2, 4), (6, 7)], 6), "0..2,4..6");
+        assert_eq!(missing(&[(2, 4), (6, 9)], 3), "0..2");
+        assert_eq!(missing(&[(0, 4)], 4), "none");
+        assert_eq!(missing(&[(0, 4)], 0), "none");
     }
 
     #[test]

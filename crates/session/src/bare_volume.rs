@@ -16,11 +16,15 @@ pub(crate) struct AutomaticInput {
     pub notes: Vec<String>,
 }
 
-/// Makes up a scene for the volume file at `path`.
+/// Makes up a scene for the volume file at `path`, which the scene calls `shown`.
 ///
 /// # Errors
 /// If it cannot be read, or has nothing to be seen.
-pub(crate) fn make_up(path: &Path, raw: Option<RawVolume>) -> Result<AutomaticInput, SessionError> {
+pub(crate) fn make_up(
+    path: &Path,
+    shown: &Path,
+    raw: Option<RawVolume>,
+) -> Result<AutomaticInput, SessionError> {
     let file = read_volume(path, &[], raw)?;
     let mut notes: Vec<String> =
         file.skipped.iter().map(|(name, why)| format!("{}: grid `{name}`: {why}", path.display())).collect();
@@ -40,7 +44,7 @@ pub(crate) fn make_up(path: &Path, raw: Option<RawVolume>) -> Result<AutomaticIn
     if names.len() > 1 {
         notes.push(format!("of the grids {} `{}` is rendered", names.join(", "), grid.name));
     }
-    make_up_of(path, &grid, DAffine3::IDENTITY, glow, raw, notes)
+    make_up_of(path, shown, &grid, DAffine3::IDENTITY, glow, raw, notes)
 }
 
 /// Makes up a scene for a grid in memory that stands for the file `name`.
@@ -52,11 +56,13 @@ pub(crate) fn make_up_of_grid(name: &str, memory: &MemoryGrid) -> Result<Automat
     if matches!(memory.grid().values, GridValues::Vec3(_)) {
         return Err(SessionError::refuse_file(path, "holds vectors; give a volume with a density"));
     }
-    make_up_of(path, memory.grid(), memory.place(), None, None, Vec::new())
+    make_up_of(path, path, memory.grid(), memory.place(), None, None, Vec::new())
 }
 
+/// Makes up a scene for a grid, which `path` stands for in messages and `shown` in the scene.
 fn make_up_of(
     path: &Path,
+    shown: &Path,
     grid: &Grid,
     place: DAffine3,
     glow: Option<Glow>,
@@ -83,7 +89,7 @@ fn make_up_of(
         None => {}
     }
     notes.push("light, camera and density are chosen from the data; --print-scene shows them".into());
-    let mut automatic = SceneDescription::for_volume(&path.display().to_string(), &summary);
+    let mut automatic = SceneDescription::for_volume(&shown.display().to_string(), &summary);
     if let Some(raw) = raw {
         automatic.description.volumes.iter_mut().try_for_each(|volume| raw.describe(volume))?;
     }

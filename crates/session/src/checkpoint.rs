@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use tyndall_film::{Accumulation, FileError};
+use tyndall_film::{Accumulation, FileError, remove_leftovers};
 
 /// A file that takes the sums every now and then.
 #[derive(Debug)]
@@ -14,9 +14,12 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// A checkpoint to be written `every` so often, counted from now.
+    /// A checkpoint to be written `every` so often, counted from now. What killed runs have left of writing it is cleared
+    /// away.
     pub fn new(path: impl Into<PathBuf>, every: Duration) -> Self {
-        Self { path: path.into(), every, last: Instant::now() }
+        let path = path.into();
+        remove_leftovers(&path);
+        Self { path, every, last: Instant::now() }
     }
 
     /// Where it is.

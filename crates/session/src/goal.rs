@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use tyndall_film::{Accumulation, Film};
+use tyndall_film::{Accumulation, Film, SampleRanges};
 
 use crate::clock::Clock;
 
@@ -59,6 +59,15 @@ impl Plan {
     /// Samples of each pixel in all, if that is known beforehand.
     pub fn spp(&self) -> Option<u64> {
         (self.samples.end < u64::MAX).then(|| self.samples.end - self.samples.start)
+    }
+
+    /// Whether a written picture of these samples is all that is asked for. An error or time that was to be reached is
+    /// taken to be so in whatever was written.
+    pub(crate) fn is_fulfilled_by(&self, samples: &SampleRanges) -> bool {
+        let is_open_ended = self.error.is_some() || self.time.is_some();
+        let Range { start, end } = self.samples;
+        let is_part = |held: &Range<u64>| held.start <= start && held.end >= end;
+        if is_open_ended { samples.count() > 0 } else { samples.as_slice().iter().any(is_part) }
     }
 
     /// The next samples to render of all films of a picture, which hold the same samples; `None` when it is done.
@@ -125,6 +134,16 @@ mod tests {
             film.complete_through(pass.end).unwrap();
         }
         assert_eq!(next, 51);
+    }
+
+    #[test]
+    fn a_written_picture_fulfils_a_plan_of_its_samples() {
+        let held = |text: &str| text.parse::<SampleRanges>().unwrap();
+        let plan = Goal { samples: Some(4..8), ..Goal::default() }.plan(64);
+        assert!(plan.is_fulfilled_by(&held("4..8")) && plan.is_fulfilled_by(&held("0..9")));
+        assert!(!plan.is_fulfilled_by(&held("4..7")) && !plan.is_fulfilled_by(&held("0..5,6..9")));
+        let plan = Goal { error: Some(0.1), spp: Some(64), ..Goal::default() }.plan(64);
+        assert!(plan.is_fulfilled_by(&held("0..20")) && !plan.is_fulfilled_by(&held("none")));
     }
 
     #[test]

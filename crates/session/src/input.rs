@@ -1,6 +1,8 @@
 //! Whatever can be rendered, as a description: the built-in scene, a scene file, one of another renderer, a bare volume with
 //! a scene made up for it, or a scene that a program hands over.
 
+mod frame;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,8 +15,10 @@ use tyndall_scene::{
 
 use crate::bare_volume::AutomaticInput;
 use crate::foreign::{self, ImportOptions, WrittenFiles};
+use crate::frames::{at_frame, holds_frame};
 use crate::volume_file::{RawVolume, check_input};
 use crate::{SessionError, bare_volume};
+use frame::FrameSource;
 
 /// A cumulus under sun and sky.
 const DEFAULT_SCENE: &str = include_str!("../../../scenes/cloud.toml");
@@ -28,6 +32,19 @@ pub struct InputOptions {
     pub raw: Option<RawVolume>,
     /// For scenes of other renderers.
     pub import: ImportOptions,
+    /// The frame of an animation that is looked at first. `####` in the path and in overrides is then its number, and that
+    /// in names of files, which stays, will be that of [any frame](Input::at_frame).
+    pub frame: Option<u32>,
+}
+
+impl InputOptions {
+    /// The overrides in the frame that is looked at.
+    fn overrides(&self) -> Vec<String> {
+        match self.frame {
+            Some(frame) => self.overrides.iter().map(|assignment| at_frame(assignment, frame)).collect(),
+            None => self.overrides.clone(),
+        }
+    }
 }
 
 /// A scene to render.
@@ -41,6 +58,7 @@ pub struct Input {
     written: Option<Arc<WrittenFiles>>,
     name: String,
     stem: String,
+    frames: FrameSource,
 }
 
 impl Input {
@@ -60,18 +78,32 @@ impl Input {
     /// # Errors
     /// If the file cannot be read, is damaged or of no known kind, or if an option does not fit it.
     pub fn open(path: &Path, options: &InputOptions) -> Result<Self, SessionError> {
-        check_input(path)?;
+        let pattern = path.to_str().filter(|name| options.frame.is_some() && holds_frame(name));
+        let file = match (pattern, options.frame) {
+            (Some(pattern), Some(frame)) => at_frame(pattern, frame).into(),
+            _ => path.to_owned(),
+        };
+        check_input(&file)?;
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let mut input = Self::open_kind(path, &name, options)?;
+        let mut input = Self::open_kind(&file, path, &name, options)?;
+        if pattern.is_some() && (is_scene(&name) || foreign::is_foreign(path)) {
+            input.frames = FrameSource::File(path.to_owned(), options.clone());
+        }
         input.name = path.display().to_string();
         input.stem = stem(&name);
         Ok(input)
     }
 
-    fn open_kind(path: &Path, name: &str, options: &InputOptions) -> Result<Self, SessionError> {
-        let InputOptions { overrides, raw, import } = options;
+    /// Opens `path`; a volume is called `shown` in the scene that is made up for it.
+    fn open_kind(
+        path: &Path,
+        shown: &Path,
+        name: &str,
+        options: &InputOptions,
+    ) -> Result<Self, SessionError> {
+        let InputOptions { raw, import, .. } = options;
         if foreign::is_foreign(path) && raw.is_none() {
-            return Self::from_foreign(path, overrides, import);
+            return Self::from_foreign(path, options);
         }
         import.refuse(path)?;
         match name.rsplit('.').next().map(str::to_ascii_lowercase).as_deref() {
@@ -80,14 +112,14 @@ impl Input {
                 "--raw-shape is for a .raw file; a scene says it itself, by raw_shape and raw_type in its [[volume]]",
             )),
             Some("toml") => {
-                Self::from_document(SceneDocument::read(path)?, overrides, None, parent_folder(path))
+                Self::from_document(SceneDocument::read(path)?, options, None, parent_folder(path))
             }
             Some("exr" | "png" | "hdr" | "acc" | "json") => Err(SessionError::refuse_file(
                 path,
                 "is not a scene or a volume; give a .toml scene, one of pbrt or Mitsuba (.pbrt .xml), or a volume file \
                  (.vdb .nvdb .vol .npy .nii .raw)",
             )),
-            _ => Self::from_volume(path, overrides, *raw),
+            _ => Self::from_volume(path, shown, options),
         }
     }
 
@@ -103,7 +135,8 @@ impl Input {
         overrides: &[String],
     ) -> Result<Self, SessionError> {
         let document = SceneDocument::parse(name, text)?;
-        let mut input = Self::from_document(document, overrides, Some(text), folder.into())?;
+        let options = InputOptions { overrides: overrides.to_vec(), ..InputOptions::default() };
+        let mut input = Self::from_document(document, &options, Some(text), folder.into())?;
         input.name = name.to_owned();
         Ok(input)
     }
@@ -119,43 +152,45 @@ impl Input {
             written: None,
             name: name.to_owned(),
             stem: "picture".into(),
+            frames: FrameSource::Same,
         }
     }
 
     fn from_document(
-        mut document: SceneDocument,
-        overrides: &[String],
+        document: SceneDocument,
+        options: &InputOptions,
         text: Option<&str>,
         folder: PathBuf,
     ) -> Result<Self, SessionError> {
-        for assignment in overrides {
-            document.set(assignment)?;
+        let mut changed = document.clone();
+        for assignment in options.overrides() {
+            changed.set(&assignment)?;
         }
-        let mut input = Self::from_description("", document.description()?, folder);
+        let mut input = Self::from_description("", changed.description()?, folder);
         // Comments survive as long as nothing is changed.
-        input.text = text.filter(|_| overrides.is_empty()).map(str::to_owned);
+        input.text = text.filter(|_| options.overrides.is_empty()).map(str::to_owned);
+        if options.frame.is_some() && options.overrides.iter().any(|assignment| holds_frame(assignment)) {
+            input.frames = FrameSource::Document(Box::new(document), options.clone());
+        }
         Ok(input)
     }
 
     /// The scene of another renderer; file names of `overrides` are relative to it.
-    fn from_foreign(
-        path: &Path,
-        overrides: &[String],
-        options: &ImportOptions,
-    ) -> Result<Self, SessionError> {
-        let (imported, written) = foreign::import(path, options)?;
+    fn from_foreign(path: &Path, options: &InputOptions) -> Result<Self, SessionError> {
+        let (imported, written) = foreign::import(path, &options.import)?;
         let name = format!("{} as a scene of Tyndall", path.display());
         let document = SceneDocument::parse(&name, &imported.description.to_toml())?;
-        let mut input = Self::from_document(document, overrides, None, parent_folder(path))?;
+        let mut input = Self::from_document(document, options, None, parent_folder(path))?;
         input.notes = imported.notes.iter().map(ToString::to_string).collect();
         input.written = Some(Arc::new(written));
         Ok(input)
     }
 
     /// The scene of a bare volume, made up from its data.
-    fn from_volume(path: &Path, overrides: &[String], raw: Option<RawVolume>) -> Result<Self, SessionError> {
-        let AutomaticInput { text, notes } = bare_volume::make_up(path, raw)?;
-        let mut input = Self::from_text("the scene made up for the volume", &text, "", overrides)?;
+    fn from_volume(path: &Path, shown: &Path, options: &InputOptions) -> Result<Self, SessionError> {
+        let AutomaticInput { text, notes } = bare_volume::make_up(path, shown, options.raw)?;
+        let document = SceneDocument::parse("the scene made up for the volume", &text)?;
+        let mut input = Self::from_document(document, options, Some(&text), PathBuf::new())?;
         input.notes = notes;
         Ok(input)
     }
@@ -242,6 +277,10 @@ impl Input {
     pub fn scene_hash(&self) -> Result<SceneHash, SessionError> {
         Ok(scene_hash_with(&self.description, &self.files)?)
     }
+}
+
+fn is_scene(name: &str) -> bool {
+    name.rsplit('.').next().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
 /// A scene ready to trace, and which it is.

@@ -10,8 +10,8 @@ use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer};
 
 use crate::clock::Clock;
 use crate::input::ReadyScene;
-use crate::picture::{are_alike, empty_films, empty_pictures};
-use crate::{Input, Plan, SessionError};
+use crate::picture::{are_alike, empty_films, empty_pictures, metadata};
+use crate::{Input, Output, Plan, SessionError};
 
 /// What the scene does not say of its render.
 #[derive(Debug, Clone, Default)]
@@ -178,6 +178,25 @@ impl Job {
         }
         Ok(Outcome::Complete)
     }
+}
+
+/// Whether all `outputs` are there already: whole, and of this scene, made in this way, with the samples of the plan.
+///
+/// # Errors
+/// If a file that the scene names cannot be read.
+pub fn is_rendered(
+    input: &Input,
+    options: &JobOptions,
+    plan: &Plan,
+    outputs: &[Output],
+) -> Result<bool, SessionError> {
+    // The scene's files are only read if there is something to compare them with.
+    if !outputs.iter().all(|output| output.path().is_file()) {
+        return Ok(false);
+    }
+    let observer = observers(input.description())[0];
+    let making = metadata(input.description(), input.scene_hash()?, options.estimators, observer);
+    Ok(outputs.iter().all(|output| output.holds(&making, plan)))
 }
 
 fn seen_by(scene: &Scene, observers: &[Observer]) -> Vec<Scene> {

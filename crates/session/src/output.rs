@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use tyndall_film::{Accumulation, Colours, Summary, write_bands_exr, write_png};
+use tyndall_film::{
+    Accumulation, Colours, ImageMetadata, Provenance, Summary, remove_leftovers, write_bands_exr, write_png,
+};
 
-use crate::SessionError;
+use crate::frames::file_at_frame;
+use crate::{Plan, SessionError};
 
 /// A file for a picture: `.exr`, `.png`, `.acc` or `.json`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,6 +47,27 @@ impl Output {
         &self.path
     }
 
+    /// The same in a frame of an animation; see [`file_at_frame`].
+    pub fn at_frame(&self, frame: u32) -> Self {
+        Self { path: file_at_frame(&self.path, frame), format: self.format }
+    }
+
+    /// Whether the file is whole and of this picture, with the samples of the plan. A `.png` does not say of which picture
+    /// it is.
+    pub(crate) fn holds(&self, making: &ImageMetadata, plan: &Plan) -> bool {
+        let provenance = match self.format {
+            Format::Png => return is_whole_png(&self.path),
+            Format::Exr => Provenance::of_exr(&self.path),
+            Format::Accumulation => Provenance::of_accumulation(&self.path),
+            Format::Json => Provenance::of_summary(&self.path),
+        };
+        provenance.is_ok_and(|of| {
+            (&of.scene_hash, &of.version, &of.options, of.seed)
+                == (&making.scene_hash, &making.version, &making.options, making.seed)
+                && plan.is_fulfilled_by(&of.samples)
+        })
+    }
+
     fn write(&self, pictures: &[Accumulation], exposure: f32) -> Result<(), SessionError> {
         let Some(Accumulation { film, metadata }) = pictures.first() else { return Ok(()) };
         Ok(match self.format {
@@ -76,6 +100,12 @@ impl Output {
     }
 }
 
+fn is_whole_png(path: &Path) -> bool {
+    std::fs::read(path).is_ok_and(|bytes| {
+        bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.ends_with(b"IEND\xae\x42\x60\x82")
+    })
+}
+
 /// Writes the picture, which is several films if it has more than three bands, to all of `outputs`; `exposure` in stops
 /// only concerns `.png`.
 ///
@@ -88,7 +118,8 @@ pub fn write_all(outputs: &[Output], pictures: &[Accumulation], exposure: f32) -
     written.into_iter().collect()
 }
 
-/// Refuses files that cannot be made: it is better to hear now than after an hour of rendering.
+/// Refuses files that cannot be made: it is better to hear now than after an hour of rendering. What killed runs have left
+/// of writing them is cleared away.
 ///
 /// # Errors
 /// If there is one.
@@ -109,6 +140,7 @@ pub fn check_writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(
                 format!("nothing can be written in its folder ({error}); choose another"),
             ));
         }
+        remove_leftovers(path);
     }
     Ok(())
 }

@@ -24,20 +24,30 @@ pub(crate) fn empty_pictures(
     scene_hash: SceneHash,
     estimators: Estimators,
 ) -> Vec<Accumulation> {
-    let metadata = |observer: &Observer| ImageMetadata {
+    let metadata = |observer| metadata(description, scene_hash, estimators, observer);
+    films
+        .into_iter()
+        .zip(observers)
+        .map(|(film, observer)| Accumulation { film, metadata: metadata(*observer) })
+        .collect()
+}
+
+/// What is known of an observer's film before its first sample.
+pub(crate) fn metadata(
+    description: &SceneDescription,
+    scene_hash: SceneHash,
+    estimators: Estimators,
+    observer: Observer,
+) -> ImageMetadata {
+    ImageMetadata {
         scene_hash: scene_hash.to_string(),
         version: env!("CARGO_PKG_VERSION").to_string(),
         options: options(description, estimators),
         seed: u64::from(description.render.seed),
-        colours: colours(*observer),
+        colours: colours(observer),
         crop: crop(&description.film),
         seconds: 0.0,
-    };
-    films
-        .into_iter()
-        .zip(observers)
-        .map(|(film, observer)| Accumulation { film, metadata: metadata(observer) })
-        .collect()
+    }
 }
 
 /// Whether two pictures are of the same scene, made in the same way.

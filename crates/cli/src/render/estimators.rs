@@ -4,6 +4,8 @@ use miette::miette;
 use tyndall_scene::description::Integrator;
 use tyndall_transport::{DistanceSampler, Estimators, TransmittanceEstimator};
 
+use crate::terminal::tell;
+
 /// Which estimators a picture is made with.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct EstimatorArgs {
@@ -24,6 +26,13 @@ impl EstimatorArgs {
     /// The choice, which may not fit the scene.
     pub fn chosen(&self) -> Estimators {
         Estimators { distance: self.distance, transmittance: self.transmittance }
+    }
+
+    /// Tells that the choice decides over the integrator, unless that was chosen as well.
+    pub fn tell_integrator(&self, chosen: Option<Integrator>) {
+        if chosen.is_none() && self.integrator().is_some() {
+            tell("note: --distance and --transmittance belong to the reference integrator, which is taken");
+        }
     }
 
     /// Refuses a choice for another integrator.

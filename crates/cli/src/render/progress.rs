@@ -1,5 +1,6 @@
 //! Progress: a bar on a terminal, or a JSON object a line.
 
+use std::fmt;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,9 +26,29 @@ pub enum ProgressStyle {
     None,
 }
 
+/// Which frame of an animation.
+#[derive(Debug, Clone, Copy)]
+pub struct FramePosition {
+    /// Its number.
+    pub frame: u32,
+    /// The how manieth it is, from 1.
+    pub position: u64,
+    /// How many there are.
+    pub count: u64,
+}
+
+impl fmt::Display for FramePosition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "frame {} ({} of {})", self.frame, self.position, self.count)
+    }
+}
+
 /// A line of `--progress json`.
 #[derive(Serialize)]
 struct Line {
+    /// The frame of an animation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<u32>,
     /// Samples a pixel so far.
     samples: f64,
     seconds: f64,
@@ -49,6 +70,7 @@ struct Shared {
     style: ProgressStyle,
     pixels: f64,
     spp: Option<f64>,
+    frame: Option<FramePosition>,
     control: Arc<Control>,
     start: Instant,
     error: Mutex<Option<f64>>,
@@ -57,7 +79,13 @@ struct Shared {
 
 impl Progress {
     /// `spp` is the number of samples of each pixel, if it is known beforehand.
-    pub fn start(style: ProgressStyle, pixels: u64, spp: Option<u64>, control: Arc<Control>) -> Progress {
+    pub fn start(
+        style: ProgressStyle,
+        pixels: u64,
+        spp: Option<u64>,
+        control: Arc<Control>,
+        frame: Option<FramePosition>,
+    ) -> Progress {
         let style = match style {
             ProgressStyle::Bar if !std::io::stderr().is_terminal() => ProgressStyle::None,
             style => style,
@@ -66,6 +94,7 @@ impl Progress {
             style,
             pixels: pixels as f64,
             spp: spp.map(|spp| spp as f64),
+            frame,
             control,
             start: Instant::now(),
             error: Mutex::new(None),
@@ -129,15 +158,18 @@ impl Shared {
                 bar.set_position(paths as u64);
                 let left = left.map_or(String::new(), |t| format!(", {} left", minutes(t)));
                 let samples = paths / self.pixels;
+                let frame = self.frame.map_or(String::new(), |frame| format!("{frame}, "));
                 bar.set_message(format!(
-                    "{samples:.1} samples a pixel, {:.2} million paths/s, {}{left}",
+                    "{frame}{samples:.1} samples a pixel, {:.2} million paths/s, {}{left}",
                     rate * 1e-6,
                     minutes(seconds)
                 ));
             }
             None => {
                 let error = *self.error.lock().unwrap_or_else(PoisonError::into_inner);
-                let line = Line { samples: paths / self.pixels, seconds, rate, error, time_left: left };
+                let frame = self.frame.map(|position| position.frame);
+                let line =
+                    Line { frame, samples: paths / self.pixels, seconds, rate, error, time_left: left };
                 if let Ok(line) = serde_json::to_string(&line) {
                     // Whether anyone listens is no matter for the picture.
                     let _ = terminal::answer(line + "\n");
