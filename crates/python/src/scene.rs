@@ -13,6 +13,7 @@ use tyndall_scene::{SceneDescription, SceneDocument, SceneError, content_hash, j
 use tyndall_session::{ImportOptions, Input, InputOptions, ReadyScene};
 
 use crate::error::{of_session, wrong};
+use crate::interrupt::abandonable;
 use crate::named::name_objects;
 use crate::tree::{Reader, to_python};
 use crate::units;
@@ -67,7 +68,8 @@ impl Scene {
         if let Some(ready) = ready {
             return Ok((input, ready));
         }
-        let ready = Arc::new(this.py().detach(|| input.ready()).map_err(of_session)?);
+        let build = input.clone();
+        let ready = Arc::new(abandonable(this.py(), move || build.ready())?.map_err(of_session)?);
         let mut scene = this.borrow_mut();
         // Others may have changed it meanwhile.
         if scene.input.description() == input.description() {
