@@ -104,6 +104,8 @@ def test_sums_that_do_not_belong_together_are_refused(ball: Ball) -> None:
     ball["volume"][0]["mu_t"] = 3
     with pytest.raises(tyndall.Error, match="another scene"):
         sums.merge(tyndall.render(ball, samples=(2, 4), progress=False).accumulation)
+    with pytest.raises(tyndall.Error, match="merged with itself"):
+        sums.merge(sums)
     assert sums.samples == [(0, 2)]
     with pytest.raises(tyndall.Error, match="is no .acc file"):
         tyndall.Accumulation.from_bytes(b"nothing")
@@ -236,13 +238,15 @@ def test_the_bar_is_shown_on_standard_error_only(ball: Ball, capsys: pytest.Capt
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"spp": 0}, "spp: give at least 1"),
+        ({"spp": 0}, "spp: give a whole number from 1 to 4294967295, not 0"),
+        ({"seed": -1}, "seed: give a whole number from 0 to 4294967295, not -1"),
+        ({"samples": (-3, 3)}, r"samples: \(-3, 3\) is no range"),
         ({"samples": (3, 3)}, r"samples: \(3, 3\) is no range"),
         ({"samples": (0, 3), "spp": 4}, "samples: says how many there are"),
         ({"error": -1.0}, "error: give a share above 0"),
         ({"error": "much"}, "error: write a share above 0"),
         ({"time": 0.0}, "time: give seconds above 0"),
-        ({"threads": 0}, "threads: give at least 1"),
+        ({"threads": 0}, "threads: give a whole number from 1 to 65535, not 0"),
     ],
 )
 def test_options_that_make_no_sense_are_refused(ball: Ball, options: dict[str, Any], message: str) -> None:

@@ -62,7 +62,9 @@ class Scene:
 
     def __new__(cls, scene: Mapping[str, Any] | Scene) -> Scene: ...
     @staticmethod
-    def load(path: _Path | None = None, define: Mapping[str, str] = ..., strict: bool = False) -> Scene:
+    def load(
+        path: _Path | None = None, frame: int | None = None, define: Mapping[str, str] = ..., strict: bool = False
+    ) -> Scene:
         """What `tyndall.load` calls."""
     @staticmethod
     def from_toml(text: str, folder: _Path | None = None, volumes: Mapping[str, Volume] | None = None) -> Scene:
@@ -70,10 +72,15 @@ class Scene:
     @staticmethod
     def of_volume(volume: Volume) -> Scene:
         """The scene of a bare volume: camera, light and density are chosen from its values."""
+    def at_frame(self, frame: int) -> Scene:
+        """The scene of another frame of the animation that was loaded with a `frame`."""
     def to_dict(self) -> dict[str, Any]:
         """All of it as dictionaries, lists and numbers."""
     def to_toml(self) -> str:
-        """All of it as the text of a scene file."""
+        """All of it as the text of a scene file.
+
+        Volumes in memory have names such as `<volume 0>` in it: for a file, save them first and name the files.
+        """
     def to_parts(self) -> tuple[str, dict[str, pathlib.Path], dict[str, Volume]]:
         """The scene as text and files, from which it can be made anew elsewhere.
 
