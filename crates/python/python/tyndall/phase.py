@@ -41,7 +41,7 @@ __all__ = [
 ]
 
 # Random numbers and results are in memory at once.
-_MOST_SAMPLES = 1 << 31
+_MOST_SAMPLES = 1 << 28
 _GREATEST_SEED = 2**64 - 1
 
 
