@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import tyndall
 
 distributed = pytest.importorskip("distributed", reason="pip install dask distributed")
@@ -251,8 +252,8 @@ def test_without_dask_one_line_says_what_to_install() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"spp": 0}, "spp: give at least 1"),
-        ({"block": 0}, "block: give at least 1"),
+        ({"spp": 0}, "spp: give a whole number from 1, not 0"),
+        ({"block": 1.5}, "block: give a whole number from 1, not 1.5"),
         ({"error": "much"}, "error: write a share above 0"),
         ({"error": -1}, "error: give a share above 0"),
     ],

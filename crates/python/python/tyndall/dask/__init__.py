@@ -260,12 +260,13 @@ def _goal(scene: Scene, spp: int | None, error: float | str | None) -> Goal:
     share = _share(error)
     if share is not None and not (np.isfinite(share) and share > 0):
         raise Error("error: give a share above 0, such as 0.01")
-    if _at_least_one("spp", spp) is None and share is None:
+    spp = _at_least_one("spp", spp)
+    if spp is None and share is None:
         spp = int(scene["render.spp"])
     return Goal(spp, share)
 
 
 def _at_least_one(name: str, number: int | None) -> int | None:
-    if number is not None and number < 1:
-        raise Error(f"{name}: give at least 1")
-    return number
+    if number is not None and (not isinstance(number, (int, np.integer)) or number < 1):
+        raise Error(f"{name}: give a whole number from 1, not {number}")
+    return None if number is None else int(number)

@@ -20,7 +20,7 @@ from tyndall.dask._work import render_block
 
 SLOTS_PER_WORKER = 2
 """One block is rendered, and one waits, so that no worker is idle while it is heard of."""
-GLANCE = 0.02
+GLANCE = 0.05
 """Seconds between two looks at what has become of blocks."""
 ROLL_CALL = 2.0
 """Seconds between two looks at which workers there are."""
