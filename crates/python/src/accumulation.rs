@@ -53,16 +53,19 @@ impl Accumulation {
     }
 
     /// Adds the samples of another.
-    fn merge(&mut self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<()> {
-        let other = &other.0;
-        let [this_one, other_one] = ["this accumulation", "the other accumulation"].map(Path::new);
-        let sums = &mut self.0;
-        py.detach(|| sums.merge(this_one, other, other_one)).map_err(of_picture)
+    fn merge(slf: &Bound<'_, Self>, other: &Bound<'_, Self>) -> PyResult<()> {
+        if slf.is(other) {
+            return Err(wrong(
+                "an accumulation cannot be merged with itself: its samples would be counted twice",
+            ));
+        }
+        let (mut this, other) = (slf.try_borrow_mut()?, other.try_borrow()?);
+        add(slf.py(), &mut this.0, &other.0)
     }
 
     fn __add__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
         let mut sum = self.clone();
-        sum.merge(py, other)?;
+        add(py, &mut sum.0, &other.0)?;
         Ok(sum)
     }
 
@@ -127,4 +130,9 @@ impl Accumulation {
         let film = &self.0.film;
         format!("<tyndall.Accumulation {}x{}, samples {}>", film.width(), film.height(), film.complete())
     }
+}
+
+fn add(py: Python<'_>, sum: &mut Sums, other: &Sums) -> PyResult<()> {
+    let [this_one, other_one] = ["this accumulation", "the other accumulation"].map(Path::new);
+    py.detach(|| sum.merge(this_one, other, other_one)).map_err(of_picture)
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::{Bound, PyDictMethods, PyResult, Python};
 use pyo3::types::PyDict;
-use tyndall_film::{Accumulation, Channel, Colours, named_channels};
+use tyndall_film::{Accumulation, Channel, Colours, Film, named_channels};
 use tyndall_session::{Output, check_writable, write_all};
 
 use crate::error::{of_session, wrong};
@@ -28,7 +28,10 @@ pub(crate) fn image<'py>(
     py: Python<'py>,
     pictures: &[Accumulation],
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-    stack(py, pictures, "")
+    match whole(pictures) {
+        Some(film) => arrange_colours(py, film, py.detach(|| film.mean_image())),
+        None => stack(py, pictures, ""),
+    }
 }
 
 /// Its standard error, of the same shape.
@@ -36,7 +39,29 @@ pub(crate) fn standard_error<'py>(
     py: Python<'py>,
     pictures: &[Accumulation],
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-    stack(py, pictures, "StandardError")
+    let Some(film) = whole(pictures) else { return stack(py, pictures, "StandardError") };
+    let errors = py.detach(|| {
+        let pixels = (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
+        pixels.map(|(x, y)| film.standard_error(x, y).map(|error| error as f32)).collect()
+    });
+    arrange_colours(py, film, errors)
+}
+
+/// The film of a picture whose channels are just its own three.
+fn whole(pictures: &[Accumulation]) -> Option<&Film> {
+    match pictures {
+        [Accumulation { film, metadata }] if !matches!(metadata.colours, Colours::Bands(_)) => Some(film),
+        _ => None,
+    }
+}
+
+fn arrange_colours<'py>(
+    py: Python<'py>,
+    film: &Film,
+    pixels: Vec<[f32; 3]>,
+) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    let shape = vec![film.height() as usize, film.width() as usize, 3];
+    PyArray1::from_vec(py, pixels.into_flattened()).reshape(shape)
 }
 
 /// The other layers by their names, of shape (H, W) or (H, W, channels).
@@ -105,7 +130,7 @@ fn arrange<'py>(
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
     let of_layer: Vec<&Channel> =
         channels.iter().filter(|channel| layer(channel, pictures) == name).collect();
-    let shape = |film: &tyndall_film::Film| [film.height() as usize, film.width() as usize];
+    let shape = |film: &Film| [film.height() as usize, film.width() as usize];
     let [height, width] = pictures.first().map_or([0, 0], |picture| shape(&picture.film));
     if let ([channel], false) = (of_layer.as_slice(), matches!(name, "" | "StandardError")) {
         return PyArray1::from_slice(py, &channel.values).reshape(vec![height, width]);

@@ -3,6 +3,8 @@
 //! The loop of `tyndall-session` runs on threads of its own without Python's lock. The thread that called waits, and every
 //! 50 ms takes the lock for a moment to see signals and to report progress, so that Ctrl-C stops at once.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -60,25 +62,24 @@ pub(crate) struct Progress {
 #[expect(clippy::too_many_arguments, reason = "Python calls it with names")]
 pub(crate) fn render(
     scene: &Bound<'_, Scene>,
-    spp: Option<u32>,
-    samples: Option<(u64, u64)>,
+    spp: Option<i64>,
+    samples: Option<(i64, i64)>,
     error: Option<f64>,
     time: Option<f64>,
-    seed: Option<u32>,
-    threads: Option<usize>,
+    seed: Option<i64>,
+    threads: Option<i64>,
     report: Option<Py<PyAny>>,
     with_image: bool,
 ) -> PyResult<Render> {
     let py = scene.py();
     let goal = goal(spp, samples, error, time)?;
-    if threads.is_some_and(|threads| !(1..=usize::from(u16::MAX)).contains(&threads)) {
-        return Err(wrong("threads: give at least 1"));
-    }
+    let threads = threads.map(|threads| whole("threads", threads, 1..=u16::MAX)).transpose()?;
+    let seed = seed.map(|seed| whole("seed", seed, 0..=u32::MAX)).transpose()?;
     let (mut input, ready) = Scene::ready(scene)?;
     if let Some(seed) = seed {
         input.description_mut().render.seed = seed;
     }
-    let options = JobOptions { threads, ..JobOptions::default() };
+    let options = JobOptions { threads: threads.map(usize::from), ..JobOptions::default() };
     let mut job = py.detach(|| Job::of_ready(&input, &ready, &options)).map_err(of_session)?;
     let plan = goal.plan(input.description().render.spp);
     let watch = Watch {
@@ -104,19 +105,27 @@ pub(crate) fn render(
     Ok(Render { pictures, exposure, notes, is_complete: outcome == Outcome::Complete })
 }
 
+/// A number of a kind, if it is in range.
+fn whole<T>(name: &str, number: i64, range: RangeInclusive<T>) -> PyResult<T>
+where
+    T: TryFrom<i64> + PartialOrd + Display,
+{
+    let (least, most) = (range.start(), range.end());
+    let refuse = || wrong(format!("{name}: give a whole number from {least} to {most}, not {number}"));
+    T::try_from(number).ok().filter(|number| range.contains(number)).ok_or_else(refuse)
+}
+
 fn goal(
-    spp: Option<u32>,
-    samples: Option<(u64, u64)>,
+    spp: Option<i64>,
+    samples: Option<(i64, i64)>,
     error: Option<f64>,
     time: Option<f64>,
 ) -> PyResult<Goal> {
-    if spp == Some(0) {
-        return Err(wrong("spp: give at least 1"));
-    }
+    let spp = spp.map(|spp| whole("spp", spp, 1..=u32::MAX)).transpose()?;
     if samples.is_some() && (spp.is_some() || error.is_some() || time.is_some()) {
         return Err(wrong("samples: says how many there are; leave spp, error and time out"));
     }
-    if let Some((first, end)) = samples.filter(|(first, end)| first >= end) {
+    if let Some((first, end)) = samples.filter(|(first, end)| *first < 0 || first >= end) {
         return Err(wrong(format!(
             "samples: ({first}, {end}) is no range; give (A, B) with A < B, such as (0, 64)"
         )));
@@ -131,7 +140,12 @@ fn goal(
         }
         None => None,
     };
-    Ok(Goal { spp, samples: samples.map(|(first, end)| first..end), error, time })
+    Ok(Goal {
+        spp,
+        samples: samples.map(|(first, end)| first.unsigned_abs()..end.unsigned_abs()),
+        error,
+        time,
+    })
 }
 
 /// A render under way, as the thread that waits for it sees it.

@@ -13,9 +13,9 @@ use tyndall_scene::{SceneDescription, SceneDocument, SceneError, content_hash, j
 use tyndall_session::{ImportOptions, Input, InputOptions, ReadyScene};
 
 use crate::error::{of_session, wrong};
+use crate::interrupt::abandonable;
 use crate::named::name_objects;
 use crate::tree::{Reader, to_python};
-use crate::units;
 use crate::volume::Volume;
 
 /// What is rendered: camera, media, surfaces, lights.
@@ -46,9 +46,10 @@ pub(crate) struct Scene {
 
 impl Scene {
     fn new(input: Input, volumes: BTreeMap<String, Volume>) -> PyResult<Self> {
-        let unit_metres = units::metres(&input.description().unit)?;
-        let grids = volumes.iter().map(|(name, volume)| (name.clone(), volume.in_scene(unit_metres)));
-        Ok(Self { input: input.with_grids(grids.collect()), volumes, ready: None })
+        let unit = &input.description().unit;
+        let grids = volumes.iter().map(|(name, volume)| Ok((name.clone(), volume.in_scene(unit)?)));
+        let grids = grids.collect::<PyResult<BTreeMap<_, _>>>()?;
+        Ok(Self { input: input.with_grids(grids), volumes, ready: None })
     }
 
     fn from_tree(
@@ -67,10 +68,12 @@ impl Scene {
         if let Some(ready) = ready {
             return Ok((input, ready));
         }
-        let ready = Arc::new(this.py().detach(|| input.ready()).map_err(of_session)?);
-        let mut scene = this.borrow_mut();
-        // Others may have changed it meanwhile.
-        if scene.input.description() == input.description() {
+        let build = input.clone();
+        let ready = Arc::new(abandonable(this.py(), move || build.ready())?.map_err(of_session)?);
+        // Others may have changed it meanwhile, or be looking at it.
+        if let Ok(mut scene) = this.try_borrow_mut()
+            && scene.input.description() == input.description()
+        {
             scene.ready = Some(Arc::clone(&ready));
         }
         Ok((input, ready))
@@ -95,20 +98,30 @@ impl Scene {
             true => Some(scene.get_item("unit")?.extract().map_err(|_| wrong("unit: must be a string"))?),
             false => None,
         };
-        let mut reader = Reader::new(unit.as_deref().unwrap_or("m"), BTreeMap::new())?;
+        let mut reader = Reader::new(unit.as_deref().unwrap_or("m"), BTreeMap::new());
         let table = name_objects(&mut reader, scene)?;
         // Names of files must go on to mean the same files.
         let folder = std::env::current_dir().unwrap_or_default();
         Self::from_tree(table, reader.volumes, folder, "scene")
     }
 
-    /// Opens whatever can be rendered.
+    /// Opens whatever can be rendered; without a path, the built-in scene.
     #[staticmethod]
-    #[pyo3(signature = (path, define = BTreeMap::new(), strict = false))]
-    fn load(py: Python<'_>, path: PathBuf, define: BTreeMap<String, String>, strict: bool) -> PyResult<Self> {
+    #[pyo3(signature = (path = None, frame = None, define = BTreeMap::new(), strict = false))]
+    fn load(
+        py: Python<'_>,
+        path: Option<PathBuf>,
+        frame: Option<u32>,
+        define: BTreeMap<String, String>,
+        strict: bool,
+    ) -> PyResult<Self> {
         let import = ImportOptions { strict, define: define.into_iter().collect() };
-        let options = InputOptions { import, ..InputOptions::default() };
-        let input = py.detach(|| Input::open(&path, &options)).map_err(of_session)?;
+        let options = InputOptions { import, frame, ..InputOptions::default() };
+        let open = || match &path {
+            Some(path) => Input::open(path, &options),
+            None => Input::built_in(&[]),
+        };
+        let input = py.detach(open).map_err(of_session)?;
         Self::new(input, BTreeMap::new())
     }
 
@@ -132,9 +145,14 @@ impl Scene {
         let volume = volume.get().clone();
         let name = "<volume 0>";
         // A scene made up has metres for its unit.
-        let grid = volume.in_scene(1.0);
+        let grid = volume.in_scene("m")?;
         let input = py.detach(|| Input::from_grid(name, grid)).map_err(of_session)?;
         Self::new(input, BTreeMap::from([(name.to_owned(), volume)]))
+    }
+
+    /// The scene of another frame of the animation that was loaded with a `frame`.
+    fn at_frame(&self, frame: u32) -> PyResult<Self> {
+        Self::new(self.input.at_frame(frame).map_err(of_session)?, self.volumes.clone())
     }
 
     /// All of it as dictionaries, lists and numbers.
@@ -142,7 +160,8 @@ impl Scene {
         to_python(py, &toml::Value::Table(self.tree()?), &self.volumes)
     }
 
-    /// All of it as the text of a scene file.
+    /// All of it as the text of a scene file. Volumes in memory have names such as `<volume 0>` in it: for a file, save them
+    /// first and name the files.
     fn to_toml(&self) -> String {
         self.input.to_toml()
     }
@@ -163,7 +182,7 @@ impl Scene {
 
     fn __setitem__(&mut self, path: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let keys: Vec<&str> = path.split('.').collect();
-        let mut reader = Reader::new(&self.input.description().unit, self.volumes.clone())?;
+        let mut reader = Reader::new(&self.input.description().unit, self.volumes.clone());
         let Some(value) = reader.value(value, &keys)? else {
             return Err(wrong(format!("{path}: is None; give a value")));
         };

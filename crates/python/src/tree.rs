@@ -19,15 +19,15 @@ const DEEPEST: usize = 24;
 
 /// Reads what a user wrote as Python's objects.
 pub(crate) struct Reader {
-    unit_metres: f64,
+    unit: String,
     /// The volumes that were met, by the names that stand for them.
     pub(crate) volumes: BTreeMap<String, Volume>,
 }
 
 impl Reader {
     /// For a scene of a unit, some volumes of which are known already.
-    pub(crate) fn new(unit: &str, volumes: BTreeMap<String, Volume>) -> PyResult<Self> {
-        Ok(Self { unit_metres: units::metres(unit)?, volumes })
+    pub(crate) fn new(unit: &str, volumes: BTreeMap<String, Volume>) -> Self {
+        Self { unit: unit.to_owned(), volumes }
     }
 
     /// The value at a path of keys; `None` if it is Python's `None`.
@@ -58,9 +58,7 @@ impl Reader {
             )
         } else if let Ok(table) = object.cast::<PyMapping>() {
             toml::Value::Table(self.table(table.as_any(), path)?)
-        } else if let Some(number) =
-            units::from_pint(object, &shown(path), dimension_of(path), self.unit_metres)?
-        {
+        } else if let Some(number) = units::from_pint(object, &shown(path), dimension_of(path), &self.unit)? {
             return self.value(&number, path);
         } else {
             return self.other(object, path);
@@ -108,9 +106,7 @@ impl Reader {
     fn text(&self, text: &str, path: &[&str]) -> PyResult<toml::Value> {
         Ok(match dimension_of(path) {
             Dimension::Plain => toml::Value::String(text.to_owned()),
-            dimension => {
-                toml::Value::Float(units::from_text(text, &shown(path), dimension, self.unit_metres)?)
-            }
+            dimension => toml::Value::Float(units::from_text(text, &shown(path), dimension, &self.unit)?),
         })
     }
 

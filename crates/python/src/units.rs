@@ -29,8 +29,8 @@ fn wanted(dimension: Dimension) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// The number that `text` stands for at `key`, in a scene whose unit is `unit_metres` long.
-pub(crate) fn from_text(text: &str, key: &str, dimension: Dimension, unit_metres: f64) -> PyResult<f64> {
+/// The number that `text` stands for at `key`, in a scene of this `unit`.
+pub(crate) fn from_text(text: &str, key: &str, dimension: Dimension, unit: &str) -> PyResult<f64> {
     let (words, _) = wanted(dimension).ok_or_else(|| wrong(format!("{key}: \"{text}\" is no number")))?;
     let measured = parse(text).map_err(|problem| wrong(format!("{key}: {problem}; give {words}")))?;
     let powers = match dimension {
@@ -45,7 +45,10 @@ pub(crate) fn from_text(text: &str, key: &str, dimension: Dimension, unit_metres
     if (measured.metres, measured.degrees) != powers {
         return Err(wrong(format!("{key}: \"{text}\" is not {words}")));
     }
-    Ok(measured.value / unit_metres.powi(measured.metres))
+    if measured.metres == 0 {
+        return Ok(measured.value);
+    }
+    Ok(measured.value / metres(unit)?.powi(measured.metres))
 }
 
 /// The numbers of a pint quantity at `key`, as a NumPy array or a number; `None` if `object` is no such quantity.
@@ -53,22 +56,22 @@ pub(crate) fn from_pint<'py>(
     object: &Bound<'py, PyAny>,
     key: &str,
     dimension: Dimension,
-    unit_metres: f64,
+    unit: &str,
 ) -> PyResult<Option<Bound<'py, PyAny>>> {
     if !(object.hasattr("magnitude")? && object.hasattr("units")? && object.hasattr("to")?) {
         return Ok(None);
     }
-    let (words, unit) = wanted(dimension).unwrap_or(("a number without a unit", "dimensionless"));
+    let (words, wanted_unit) = wanted(dimension).unwrap_or(("a number without a unit", "dimensionless"));
     let is_plain = object.getattr("units")?.str()? == "dimensionless";
-    let unit = if is_plain { "dimensionless" } else { unit };
-    let converted = object.call_method1("to", (unit,)).map_err(|_| {
+    let wanted_unit = if is_plain { "dimensionless" } else { wanted_unit };
+    let converted = object.call_method1("to", (wanted_unit,)).map_err(|_| {
         let shown = object.str().map_or_else(|_| "a quantity".to_owned(), |text| text.to_string());
         wrong(format!("{key}: {shown} is not {words}"))
     })?;
     let magnitude = converted.getattr("magnitude")?;
     let factor = match dimension {
-        Dimension::Length if !is_plain => 1.0 / unit_metres,
-        Dimension::PerLength if !is_plain => unit_metres,
+        Dimension::Length if !is_plain => 1.0 / metres(unit)?,
+        Dimension::PerLength if !is_plain => metres(unit)?,
         _ => return Ok(Some(magnitude)),
     };
     // Multiplying by 1 would make floats of integers.

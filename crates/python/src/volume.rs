@@ -38,9 +38,9 @@ pub(crate) struct Volume {
 }
 
 impl Volume {
-    /// The grid as it is in a scene whose unit is `unit_metres` long.
-    pub(crate) fn in_scene(&self, unit_metres: f64) -> MemoryGrid {
-        if self.is_in_metres { self.grid.scaled(1.0 / unit_metres) } else { self.grid.clone() }
+    /// The grid as it is in a scene of this `unit`.
+    pub(crate) fn in_scene(&self, unit: &str) -> PyResult<MemoryGrid> {
+        Ok(if self.is_in_metres { self.grid.scaled(1.0 / units::metres(unit)?) } else { self.grid.clone() })
     }
 
     /// Whether both are of the same voxels in the same place.
@@ -246,7 +246,7 @@ fn lengths(given: &Bound<'_, PyAny>, key: &str) -> PyResult<(DVec3, bool)> {
         if let Ok(text) = given.cast::<PyString>() {
             return Ok((units::length_in_metres(&text.to_string(), key)?, true));
         }
-        let metres = units::from_pint(given, key, tyndall_scene::description::Dimension::Length, 1.0)?;
+        let metres = units::from_pint(given, key, tyndall_scene::description::Dimension::Length, "m")?;
         let number = metres.as_ref().unwrap_or(given).extract::<f64>();
         let number = number.ok().filter(|number| number.is_finite());
         let number =

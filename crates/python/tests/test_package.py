@@ -88,6 +88,16 @@ def test_the_stub_has_all_names_and_no_others() -> None:
             assert set(vars(value)) - ordinary == named[name] - ordinary, name
 
 
+def test_the_example_of_the_readme_runs() -> None:
+    readme = (pathlib.Path(__file__).parents[3] / "README.md").read_text()
+    code = readme.split("```python\n")[1].split("```")[0]
+    # The same with hardly a sample.
+    shortened = code.replace("spp=16", "time=1").replace("time=60", "time=1")
+    assert shortened.count("time=1") == 2
+    exec(compile(shortened, "README.md", "exec"), {})
+    assert pathlib.Path("smoke.exr").stat().st_size > 0
+
+
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy is not installed")
 def test_types_are_right(tmp_path: pathlib.Path) -> None:
     program = tmp_path / "program.py"

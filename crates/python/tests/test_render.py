@@ -104,6 +104,8 @@ def test_sums_that_do_not_belong_together_are_refused(ball: Ball) -> None:
     ball["volume"][0]["mu_t"] = 3
     with pytest.raises(tyndall.Error, match="another scene"):
         sums.merge(tyndall.render(ball, samples=(2, 4), progress=False).accumulation)
+    with pytest.raises(tyndall.Error, match="merged with itself"):
+        sums.merge(sums)
     assert sums.samples == [(0, 2)]
     with pytest.raises(tyndall.Error, match="is no .acc file"):
         tyndall.Accumulation.from_bytes(b"nothing")
@@ -194,8 +196,39 @@ def test_ctrl_c_returns_what_there_is_with_a_warning(endless: Ball) -> None:
     assert float(seconds) < 10
 
 
+def test_the_median_error_is_that_of_the_pixels(ball: Ball) -> None:
+    picture = tyndall.render(ball, spp=16, progress=False)
+    luminance = np.array([0.2126, 0.7152, 0.0722])
+    relative = (picture.standard_error @ luminance) / (picture.image @ luminance)
+    met = np.sort(relative[picture.layers["A"] > 0])
+    assert picture.median_error == pytest.approx(met[len(met) // 2], rel=1e-5)
+    np.testing.assert_array_equal(picture.standard_error, picture.accumulation.standard_error)
+
+
+def test_ctrl_c_ends_the_building_of_a_scene() -> None:
+    program = """
+        import os, signal, threading, time, tyndall
+        scene = tyndall.load(set={"volume.0.procedural.resolution": 700})
+        pressed = []
+        def press():
+            time.sleep(0.3)
+            pressed.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+        threading.Thread(target=press).start()
+        try:
+            tyndall.render(scene, spp=1, progress=False)
+        except KeyboardInterrupt:
+            print(time.monotonic() - pressed[0], flush=True)
+            os._exit(0)
+    """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(program)], check=True, capture_output=True, text=True, timeout=120)
+    assert float(done.stdout) < 10
+
+
 def test_the_bar_is_shown_on_standard_error_only(ball: Ball, capsys: pytest.CaptureFixture[str]) -> None:
-    tyndall.render(tyndall.Volume(np.ones((8, 8, 8))), time=0.5)
+    scene = tyndall.Scene.of_volume(tyndall.Volume(np.ones((8, 8, 8))))
+    scene["film.resolution"] = [64, 48]
+    tyndall.render(scene, time=0.5)
     shown = capsys.readouterr()
     assert shown.out == "" and "note: light, camera and density are chosen" in shown.err
     tyndall.render(ball, spp=1, progress=False)
@@ -205,13 +238,15 @@ def test_the_bar_is_shown_on_standard_error_only(ball: Ball, capsys: pytest.Capt
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"spp": 0}, "spp: give at least 1"),
+        ({"spp": 0}, "spp: give a whole number from 1 to 4294967295, not 0"),
+        ({"seed": -1}, "seed: give a whole number from 0 to 4294967295, not -1"),
+        ({"samples": (-3, 3)}, r"samples: \(-3, 3\) is no range"),
         ({"samples": (3, 3)}, r"samples: \(3, 3\) is no range"),
         ({"samples": (0, 3), "spp": 4}, "samples: says how many there are"),
         ({"error": -1.0}, "error: give a share above 0"),
         ({"error": "much"}, "error: write a share above 0"),
         ({"time": 0.0}, "time: give seconds above 0"),
-        ({"threads": 0}, "threads: give at least 1"),
+        ({"threads": 0}, "threads: give a whole number from 1 to 65535, not 0"),
     ],
 )
 def test_options_that_make_no_sense_are_refused(ball: Ball, options: dict[str, Any], message: str) -> None:

@@ -145,6 +145,27 @@ def test_scenes_of_other_renderers_are_opened() -> None:
     assert tyndall.render(scene, progress=False).image.shape == (6, 8, 3)
 
 
+def test_a_frame_of_an_animation_is_a_scene(ball: Ball, blob: np.ndarray) -> None:
+    for frame in (1, 2):
+        np.save(f"blob.{frame:03}.npy", frame * blob)
+    ball["volume"] = [{"file": "blob.###.npy", "mu_t": 1, "albedo": 0.5}]
+    pathlib.Path("blob.toml").write_text(tyndall.Scene(ball).to_toml())
+    first = tyndall.load("blob.toml", frame=1).at_frame(1)
+    second = first.at_frame(2)
+    assert list(second.files) == ["blob.002.npy"] and second.hash != first.hash
+
+
+def test_a_unit_that_is_not_known_is_told_where_it_matters(ball: Ball) -> None:
+    ball["unit"] = "parsec"
+    assert tyndall.Scene(ball)["unit"] == "parsec"
+    ball["camera"]["position"] = ["3 m", 0, 0]
+    assert "`parsec` is no unit of length" in refusal(ball)
+
+
+def test_without_a_path_it_is_the_built_in_scene() -> None:
+    assert repr(tyndall.load(set={"film.resolution": [8, 6]})) == "<tyndall.Scene 8x6, 1 volume, 1 light>"
+
+
 def test_the_schema_is_json() -> None:
     import json
 

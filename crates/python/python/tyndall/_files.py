@@ -16,11 +16,11 @@ from tyndall._tyndall import Scene, Volume
 
 
 def contents(
-    parts: tuple[str, Mapping[str, os.PathLike[str]], Mapping[str, Volume]],
+    parts: tuple[str, Mapping[str, pathlib.Path], Mapping[str, Volume]],
 ) -> tuple[str, dict[str, bytes], dict[str, Volume]]:
     """The parts of a scene with the bytes of its files in place of their paths."""
     text, paths, volumes = parts
-    return text, {name: pathlib.Path(path).read_bytes() for name, path in paths.items()}, dict(volumes)
+    return text, {name: path.read_bytes() for name, path in paths.items()}, dict(volumes)
 
 
 def scene(text: str, files: Mapping[str, bytes], volumes: Mapping[str, Volume]) -> Scene:

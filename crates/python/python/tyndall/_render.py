@@ -14,16 +14,18 @@ from tyndall._tyndall import Progress, Render, Scene, Volume
 
 
 def load(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None = None,
     *,
     set: Mapping[str, Any] | None = None,
+    frame: int | None = None,
     define: Mapping[str, str] | None = None,
     strict: bool = False,
 ) -> Scene:
     """Opens whatever the command `tyndall render` does.
 
     That is a scene file (`.toml`), a scene of pbrt-v4 (`.pbrt`) or Mitsuba 3 (`.xml`), or a volume file, for which camera, light
-    and density are chosen from the data. `set` changes values by their path, `define` says what `$NAME` stands for in a scene of
+    and density are chosen from the data; without a path it is the built-in cumulus. `set` changes values by their path, `frame` opens an animation, in
+    whose names of files `####` is the number of the frame, at this one: `scene.at_frame(n)` is then the scene of each. `define` says what `$NAME` stands for in a scene of
     Mitsuba, and `strict` refuses scenes of other renderers of which something is not supported. What was guessed is in the
     scene's `notes`.
 
@@ -37,7 +39,7 @@ def load(
     >>> tyndall.load(path, set={"film.resolution": [8, 6]})
     <tyndall.Scene 8x6, 1 volume, 1 light>
     """
-    scene = Scene.load(path, define=dict(define or {}), strict=strict)
+    scene = Scene.load(path, frame=frame, define=dict(define or {}), strict=strict)
     for key, value in (set or {}).items():
         scene[key] = value
     return scene

@@ -1,6 +1,7 @@
 """Types of the compiled part."""
 
 import os
+import pathlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias, final
 
@@ -36,7 +37,7 @@ class Volume:
         """The volume of `to_bytes`."""
     def to_bytes(self) -> bytes:
         """All of it, for `from_bytes`."""
-    def save(self, path: _Path) -> str:
+    def save(self, path: _Path) -> pathlib.Path:
         """Writes it to a file whose extension says the format (.vdb .nvdb .vol .npy .nii .nii.gz .raw); returns the name written."""
     @property
     def array(self) -> npt.NDArray[np.float32]:
@@ -61,7 +62,9 @@ class Scene:
 
     def __new__(cls, scene: Mapping[str, Any] | Scene) -> Scene: ...
     @staticmethod
-    def load(path: _Path, define: Mapping[str, str] = ..., strict: bool = False) -> Scene:
+    def load(
+        path: _Path | None = None, frame: int | None = None, define: Mapping[str, str] = ..., strict: bool = False
+    ) -> Scene:
         """What `tyndall.load` calls."""
     @staticmethod
     def from_toml(text: str, folder: _Path | None = None, volumes: Mapping[str, Volume] | None = None) -> Scene:
@@ -69,11 +72,16 @@ class Scene:
     @staticmethod
     def of_volume(volume: Volume) -> Scene:
         """The scene of a bare volume: camera, light and density are chosen from its values."""
+    def at_frame(self, frame: int) -> Scene:
+        """The scene of another frame of the animation that was loaded with a `frame`."""
     def to_dict(self) -> dict[str, Any]:
         """All of it as dictionaries, lists and numbers."""
     def to_toml(self) -> str:
-        """All of it as the text of a scene file."""
-    def to_parts(self) -> tuple[str, dict[str, str], dict[str, Volume]]:
+        """All of it as the text of a scene file.
+
+        Volumes in memory have names such as `<volume 0>` in it: for a file, save them first and name the files.
+        """
+    def to_parts(self) -> tuple[str, dict[str, pathlib.Path], dict[str, Volume]]:
         """The scene as text and files, from which it can be made anew elsewhere.
 
         The text names each file by a hash of its content and its name, such as `HASH/cloud.vdb`; then where these are now; then
@@ -90,7 +98,7 @@ class Scene:
     def hash(self) -> str:
         """Hash of all that decides the expected picture, files and volumes included."""
     @property
-    def files(self) -> dict[str, str]:
+    def files(self) -> dict[str, pathlib.Path]:
         """The files that the scene names: as it names them, and where they are."""
     @property
     def volumes(self) -> dict[str, Volume]:
