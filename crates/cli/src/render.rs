@@ -53,7 +53,7 @@ pub struct Args {
     output: Vec<Output>,
     #[command(flatten)]
     goal: GoalArgs,
-    /// Render only the samples A to B−1 of each pixel
+    /// Render only the samples A to B−1 of each pixel; A..=B has B as well
     #[arg(long, value_name = "A..B", value_parser = parse_samples, conflicts_with_all = ["spp", "error", "time"])]
     samples: Option<Range<u64>>,
     /// Seed of the random numbers
@@ -246,10 +246,16 @@ fn sampler_name(sampler: Sampler) -> &'static str {
 }
 
 fn parse_samples(text: &str) -> Result<Range<u64>, String> {
-    let range = text.split_once("..").and_then(|(start, end)| Some(start.parse().ok()?..end.parse().ok()?));
+    let range = text.split_once("..").and_then(|(start, end)| {
+        let end = match end.strip_prefix('=') {
+            Some(last) => last.parse::<u64>().ok()?.checked_add(1)?,
+            None => end.parse().ok()?,
+        };
+        Some(start.parse().ok()?..end)
+    });
     range
         .filter(|range: &Range<u64>| range.start < range.end)
-        .ok_or("write A..B with A < B, such as 0..64".into())
+        .ok_or("write A..B with A < B, such as 0..64, or A..=B".into())
 }
 
 fn parse_resolution(text: &str) -> Result<[u32; 2], String> {
@@ -284,6 +290,16 @@ fn parse_sampler(text: &str) -> Result<Sampler, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn samples_end_before_the_last_number_or_with_it() {
+        assert_eq!(parse_samples("0..64"), Ok(0..64));
+        assert_eq!(parse_samples("0..=63"), Ok(0..64));
+        assert_eq!(parse_samples("7..=7"), Ok(7..8));
+        for wrong in ["5..5", "5..=4", "0..=18446744073709551615", "..4", "1-4", "0..==3"] {
+            assert!(parse_samples(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn exposures_are_finite() {

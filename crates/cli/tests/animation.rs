@@ -146,6 +146,15 @@ fn frames_that_cannot_be_rendered_are_told_before_the_first_is() {
 }
 
 #[test]
+fn a_damaged_frame_ends_the_animation_after_those_before_it() {
+    let folder = folder();
+    folder.write("ball.03.npy", &ball(1.0, 1.0)[..200]);
+    let run = folder.run("render scene.toml --frames 1..5 -o a.acc");
+    assert!(run.code == Some(1) && run.err.contains("error: ball.03.npy: "), "{}", run.err);
+    assert!(folder.path("a.0002.acc").exists() && !folder.path("a.0004.acc").exists());
+}
+
+#[test]
 fn progress_names_the_frame() {
     let folder = folder();
     let run = folder.done("render scene.toml --frames 2..3 --progress json -o a.png");

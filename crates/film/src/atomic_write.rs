@@ -78,8 +78,9 @@ fn write_beside(
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut temporary = builder.tempfile_in(folder)?;
-    // Where there are no locks, leftovers are not told from what is being written, and stay.
-    let _ = temporary.as_file().lock();
+    // Where there are no locks, leftovers are not told from what is being written, and stay. Nobody else has this file, so
+    // that there is nothing to wait for.
+    let _ = temporary.as_file().try_lock();
     let mut buffered = BufWriter::with_capacity(1 << 20, temporary.as_file_mut());
     fill(&mut buffered)?;
     buffered.flush()?;

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import signal
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -49,6 +52,14 @@ def test_threads_change_nothing_and_seeds_do() -> None:
     one, two = (measure.slab(1, 1, samples=3000, threads=threads) for threads in (1, 2))
     assert one.reflectance == two.reflectance
     assert measure.slab(1, 1, samples=3000, seed=1).reflectance != one.reflectance
+
+
+def test_ctrl_c_ends_a_long_measurement() -> None:
+    interrupt = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    interrupt.start()
+    with pytest.raises(KeyboardInterrupt):
+        measure.slab(50, 1, samples=1 << 31)
+    interrupt.join()
 
 
 def test_half_spaces_have_no_bottom_and_what_is_conserved_adds_up() -> None:

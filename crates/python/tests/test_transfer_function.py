@@ -47,6 +47,14 @@ def test_colour_maps_are_spread_over_the_points_and_linear_light() -> None:
     assert np.allclose(function.emission([10, 30]), [[0] * 3, [3] * 3])
 
 
+def test_colour_maps_of_matplotlib_are_known_by_name() -> None:
+    maps = pytest.importorskip("matplotlib").colormaps
+    function = TransferFunction([0, 1], extinction=0, emission="inferno")
+    # Its last colour, (252, 255, 164) of 255, in linear light.
+    assert np.allclose(maps["inferno"](1.0)[:3], np.array([252, 255, 164]) / 255, atol=2e-3)
+    assert np.allclose(function.emission(1), [0.974, 1.0, 0.371], atol=5e-3)
+
+
 def test_a_reflectance_is_what_a_thick_layer_reflects() -> None:
     function = TransferFunction([0, 1], extinction=1, reflectance=[[0.2, 0.5, 0.8], [0.2, 0.5, 0.8]], g=0.3)
     albedo = function.albedo(0.5)

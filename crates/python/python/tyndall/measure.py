@@ -23,7 +23,7 @@ from tyndall._arrays import Floats
 from tyndall._errors import Error
 from tyndall._render import _share, as_scene
 from tyndall._tyndall import Scene
-from tyndall.phase import PhaseFunction
+from tyndall.phase import PhaseFunction, phase_function_of
 
 __all__ = ["Estimate", "Slab", "flux", "meters", "slab"]
 
@@ -99,7 +99,7 @@ def slab(
     degrees = _degrees(incidence)
     arrays = _arrays.broadcast(tau=tau, albedo=albedo, g=g, n=n, ground_albedo=ground_albedo, incidence=degrees)
     views = _arrays.floats("radiance", radiance).ravel()
-    function = PhaseFunction(phase) if isinstance(phase, str) else phase
+    function = None if phase is None else phase_function_of(phase)
     start = perf_counter()
     layers = []
     for one_tau, one_albedo, one_g, one_n, one_ground, one_degrees in zip(

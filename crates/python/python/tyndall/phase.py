@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from tyndall import _arrays, _tyndall
 from tyndall._arrays import Floats
 from tyndall._errors import Error
+from tyndall._progress import say
 from tyndall._tyndall import PhaseFunction
 
 __all__ = [
@@ -40,7 +41,7 @@ __all__ = [
 ]
 
 # Random numbers and results are in memory at once.
-_MOST_SAMPLES = 1 << 31
+_MOST_SAMPLES = 1 << 28
 _GREATEST_SEED = 2**64 - 1
 
 
@@ -54,7 +55,7 @@ def evaluate(spec: str | PhaseFunction, cos_theta: ArrayLike) -> Floats:
     1.0
     """
     cosines = _arrays.cosines("cos_theta", cos_theta)
-    return _shaped(_of(spec).values(cosines.ravel()), cosines.shape)
+    return _shaped(phase_function_of(spec).values(cosines.ravel()), cosines.shape)
 
 
 def mean_cosine(spec: str | PhaseFunction) -> float:
@@ -63,7 +64,7 @@ def mean_cosine(spec: str | PhaseFunction) -> float:
     >>> round(mean_cosine("draine(g=0.3,alpha=10)"), 6)
     0.447568
     """
-    return _of(spec).mean_cosine
+    return phase_function_of(spec).mean_cosine
 
 
 def sample(spec: str | PhaseFunction, n: int | None = None, *, u: ArrayLike | None = None, seed: int = 0) -> Floats:
@@ -77,7 +78,7 @@ def sample(spec: str | PhaseFunction, n: int | None = None, *, u: ArrayLike | No
     >>> bool(abs(sample("hg:0.85", 10_000, seed=1).mean() - 0.85) < 0.02)
     True
     """
-    phase = _of(spec)
+    phase = phase_function_of(spec)
     if (n is None) == (u is None):
         raise Error("sample: give the number n of samples, or random numbers u, and not both")
     if u is None:
@@ -101,7 +102,7 @@ def evaluate_directions(spec: str | PhaseFunction, before: ArrayLike, after: Arr
     first, second = _arrays.broadcast_rows(
         before=_arrays.directions("before", before), after=_arrays.directions("after", after)
     )
-    return _shaped(_of(spec).values_between(_arrays.rows(first), _arrays.rows(second)), first.shape[:-1])
+    return _shaped(phase_function_of(spec).values_between(_arrays.rows(first), _arrays.rows(second)), first.shape[:-1])
 
 
 def sample_directions(spec: str | PhaseFunction, before: ArrayLike, u: ArrayLike) -> Floats:
@@ -114,7 +115,7 @@ def sample_directions(spec: str | PhaseFunction, before: ArrayLike, u: ArrayLike
     if numbers.ndim == 0 or numbers.shape[-1] != 2:
         raise Error(f"u: the last axis must have 2 numbers; the shape is {numbers.shape}")
     first, second = _arrays.broadcast_rows(before=_arrays.directions("before", before), u=numbers)
-    return _of(spec).directions(_arrays.rows(first), _arrays.rows(second)).reshape(first.shape)
+    return phase_function_of(spec).directions(_arrays.rows(first), _arrays.rows(second)).reshape(first.shape)
 
 
 class Mie(NamedTuple):
@@ -241,11 +242,14 @@ def _complex(name: str, value: complex | ArrayLike | None) -> NDArray[np.complex
         raise Error(f"{name}: complex numbers such as 1.33+1e-5j are needed, not {value!r}") from None
 
 
-def _of(spec: str | PhaseFunction) -> PhaseFunction:
+def phase_function_of(spec: str | PhaseFunction) -> PhaseFunction:
     if isinstance(spec, PhaseFunction):
         return spec
     if isinstance(spec, str):
-        return PhaseFunction(spec)
+        phase = PhaseFunction(spec)
+        if phase.note is not None:
+            say(f"note: {phase.note}")
+        return phase
     raise Error(f'a phase function is one line such as "hg(g=0.85)", not {spec!r}')
 
 
