@@ -78,6 +78,7 @@ struct Engine<'a> {
     seen_at_once: Vec<usize>,
     work: Work,
     active: usize,
+    is_cancelled: bool,
 }
 
 /// What a path does next.
@@ -105,7 +106,7 @@ impl wide::Task for Engine<'_> {
         }
         let (mut tentative, mut left, mut happened) = (List::new(), List::new(), List::new());
         let mut round = 0_u32;
-        while self.active > 0 {
+        while self.active > 0 && !self.is_cancelled {
             let (clock, active) = (counters::clock(), self.active);
             march::step(&mut self.rays, &self.scene.volumes, &mut tentative, &mut left);
             march::collide(&mut self.rays, &self.scene.volumes, &tentative, &mut happened);
@@ -134,7 +135,7 @@ impl wide::Task for Engine<'_> {
                 return false;
             }
         }
-        true
+        !self.is_cancelled
     }
 }
 
@@ -159,6 +160,7 @@ impl<'a> Engine<'a> {
             seen_at_once: lights_seen_at_once(scene.scene),
             work: Work::default(),
             active: 0,
+            is_cancelled: false,
         }
     }
 
@@ -167,7 +169,7 @@ impl<'a> Engine<'a> {
     fn proceed(&mut self, slot: usize, mut next: Next) {
         loop {
             next = match next {
-                Next::Start => match self.work.next(self.tiles) {
+                Next::Start => match self.next_sample() {
                     Some((pixel, sample)) => self.start(slot, pixel, sample),
                     None => {
                         self.rays.end[slot] = 0.0;
@@ -222,6 +224,14 @@ impl<'a> Engine<'a> {
                 },
             };
         }
+    }
+
+    /// The next sample to begin, unless the render is cancelled. Asked for each path: through dense media without a grid
+    /// whole paths go by in a round.
+    #[inline(always)]
+    fn next_sample(&mut self) -> Option<(Pixel, u64)> {
+        self.is_cancelled |= self.cancel.load(Ordering::Relaxed);
+        if self.is_cancelled { None } else { self.work.next(self.tiles) }
     }
 
     #[inline(always)]
