@@ -150,8 +150,8 @@ def test_a_frame_of_an_animation_is_a_scene(ball: Ball, blob: np.ndarray) -> Non
         np.save(f"blob.{frame:03}.npy", frame * blob)
     ball["volume"] = [{"file": "blob.###.npy", "mu_t": 1, "albedo": 0.5}]
     pathlib.Path("blob.toml").write_text(tyndall.Scene(ball).to_toml())
-    first = tyndall.load("blob.toml", frame=1).at_frame(1)
-    second = first.at_frame(2)
+    animation = tyndall.load("blob.toml", frame=1)
+    first, second = animation.at_frame(1), animation.at_frame(2)
     assert list(second.files) == ["blob.002.npy"] and second.hash != first.hash
 
 

@@ -37,7 +37,7 @@ fn files(grid: MemoryGrid) -> SceneFiles {
 fn density_at(built: &BuiltScene, place: DVec3) -> f64 {
     let volume = &built.scene.volumes[0];
     let Density::Grid(bricks) = &volume.density else { panic!("a grid") };
-    f64::from(bricks.value(volume.world_to_local.transform_point3(place)))
+    bricks.value(volume.world_to_local.transform_point3(place))
 }
 
 #[test]

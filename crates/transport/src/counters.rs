@@ -97,7 +97,8 @@ pub(crate) fn clock() -> Option<Instant> {
 }
 
 /// Counts a round of the march, which began at `clock` with `active` rays: those of `tentative` have had a density
-/// looked up, those of `happened` have collided, or are shadow rays that roulette ended. `shadow` is above 0 for shadow rays.
+/// looked up, those of `happened` have collided, are shadow rays that roulette ended, or gather. `shadow` is above 0 for shadow
+/// rays, and below for those that gather.
 #[inline(always)]
 pub(crate) fn count_round(
     clock: Option<Instant>,
@@ -113,11 +114,12 @@ pub(crate) fn count_round(
     count(Event::Cell, active as u64);
     let shadows =
         |slots: &[u16]| slots.iter().filter(|&&slot| shadow[usize::from(slot)] > 0.0).count() as u64;
+    let gathered = happened.iter().filter(|&&slot| shadow[usize::from(slot)] < 0.0).count() as u64;
     let (looked_up, ended) = (shadows(tentative), shadows(happened));
     count(Event::ShadowStep, looked_up);
     count(Event::Tentative, tentative.len() as u64 - looked_up);
     count(Event::ShadowEnded, ended);
-    count(Event::Real, happened.len() as u64 - ended);
+    count(Event::Real, happened.len() as u64 - ended - gathered);
 }
 
 impl Counters {

@@ -244,11 +244,11 @@ pub(crate) fn trace_tiles(
         let rect = tile.rect();
         for y in rect.y..rect.y + rect.height {
             for x in rect.x..rect.x + rect.width {
-                if cancel.load(Ordering::Relaxed) {
-                    return false;
-                }
                 let pixel = u64::from(y) * u64::from(scene.resolution[0]) + u64::from(x);
                 for sample in tile.samples() {
+                    if cancel.load(Ordering::Relaxed) {
+                        return false;
+                    }
                     let mut random = Random::new(options.seed, pixel, sample);
                     let draws = FirstDraws::new(options.sampler, options.seed, pixel, sample);
                     let film_u = draws.film(&mut random);

@@ -158,17 +158,16 @@ def _coloured(name: str, given: Colours, points: Floats) -> tuple[Floats, Floats
 
 def _colour_map(name: str, given: str | Callable[[Floats], Any]) -> Floats:
     """Linear colours, as many as there are steps."""
+    colour_map: Any = given
     if isinstance(given, str):
         try:
             import matplotlib
         except ImportError:
             raise Error(f'{name}: "{given}" is a colour map of matplotlib, which is not installed') from None
         try:
-            colour_map: Callable[[Floats], Any] = matplotlib.colormaps[given]
+            colour_map = matplotlib.colormaps[given]
         except KeyError:
             raise Error(f'{name}: matplotlib has no colour map "{given}"') from None
-    else:
-        colour_map = given
     colours = np.asarray(colour_map(np.linspace(0, 1, _STEPS)), dtype=float)
     if colours.ndim != 2 or colours.shape[0] != _STEPS or colours.shape[1] not in (3, 4):
         raise Error(f"{name}: the colour map must make (N, 3) or (N, 4) colours of N numbers")

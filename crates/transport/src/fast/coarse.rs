@@ -56,6 +56,20 @@ impl Lattice {
         (0..8).map(|bits| value(position + corner(bits))).sum::<f32>() / 8.0
     }
 
+    /// The mean optical thickness along the rows of places, parallel to all three axes, in which there is anything.
+    pub fn mean_thickness(&self, mu_t: &[f32]) -> f32 {
+        let [nx, ny, nz] = self.places;
+        let row = |start: usize, stride: usize, count: usize| {
+            (0..count).map(|i| mu_t[start + i * stride]).sum::<f32>() / self.per_length
+        };
+        let along_x = (0..ny * nz).map(|start| row(start, ny * nz, nx));
+        let along_y = (0..nx * nz).map(|number| row(number / nz * (ny * nz) + number % nz, nz, ny));
+        let along_z = (0..nx * ny).map(|number| row(number * nz, 1, nz));
+        let rows = along_x.chain(along_y).chain(along_z).filter(|&thickness| thickness > 0.0);
+        let (sum, count) = rows.fold((0.0, 0_u32), |(sum, count), thickness| (sum + thickness, count + 1));
+        sum / count.max(1) as f32
+    }
+
     /// A table's values mixed trilinearly; outside the box, those at its border.
     #[inline]
     pub fn lookup(&self, table: &[f32], position: Vec3) -> f32 {

@@ -11,10 +11,14 @@
 //! part of a render has the same one.
 
 use glam::{DVec3, Vec3};
-use tyndall_scene::{Density, Light, Scene, Volume};
+use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 
 use super::coarse::Lattice;
 use super::volume::FastGrid;
+use crate::way::is_plain;
+
+/// Optical thickness of a surface. Not too much, as it is mixed with that of places beside it that light comes to.
+const HIDDEN: f32 = 20.0;
 
 /// Lights that get a table; others are traced as if there were none.
 const GREATEST_LIGHTS: usize = 8;
@@ -22,6 +26,8 @@ const GREATEST_LIGHTS: usize = 8;
 /// Tables of the optical thickness to lights.
 pub(crate) struct LightCache {
     lattice: Lattice,
+    /// Mean optical thickness of rays that meet anything.
+    thickness: f32,
     /// One table a light that has one.
     tables: Vec<Option<Vec<f32>>>,
 }
@@ -33,13 +39,14 @@ enum Toward {
 }
 
 impl LightCache {
-    /// The tables of a scene, if any light of it can have one, its volumes are grids, and no shape bounds them.
+    /// The tables of a scene, if any light of it can have one, its volumes are grids, no shape bounds them, and nothing passes
+    /// through its surfaces.
     pub fn new(scene: &Scene, centre: DVec3) -> Option<LightCache> {
         let toward: Vec<Option<Toward>> = scene.lights.iter().map(|light| toward(light, centre)).collect();
         if !(1..=GREATEST_LIGHTS).contains(&toward.iter().flatten().count()) {
             return None;
         }
-        if !scene.boundaries.is_empty() {
+        if !is_plain(scene) {
             return None;
         }
         let grids: Option<Vec<(FastGrid<'_>, f32)>> =
@@ -50,9 +57,26 @@ impl LightCache {
                 grids.iter().map(|(grid, mu_t)| mu_t * grid.nearest_or_nothing(position)).sum()
             })
         });
-        let table = |toward: &Toward| lattice.table(|from| optical_thickness(&lattice, &mu_t, from, toward));
+        let table = |toward: &Toward| {
+            lattice.table(|from| match is_hidden(scene, centre, from, toward) {
+                true => HIDDEN,
+                false => optical_thickness(&lattice, &mu_t, from, toward),
+            })
+        };
         let tables = toward.iter().map(|toward| toward.as_ref().map(table)).collect();
-        Some(LightCache { lattice, tables })
+        let thickness = lattice.mean_thickness(&mu_t);
+        Some(LightCache { lattice, thickness, tables })
+    }
+
+    /// Numbers of the lights that have a table.
+    #[inline]
+    pub fn lights(&self) -> impl Iterator<Item = usize> {
+        self.tables.iter().enumerate().filter(|(_, table)| table.is_some()).map(|(number, _)| number)
+    }
+
+    /// Mean optical thickness of rays that are parallel to an axis and meet anything.
+    pub fn mean_thickness(&self) -> f32 {
+        self.thickness
     }
 
     /// The transmittance to the light of this number from a place amid the volumes, relative to the scene's centre; none if
@@ -62,6 +86,16 @@ impl LightCache {
         let table = self.tables[light].as_ref()?;
         Some(tyndall_lanes::exp(-self.lattice.lookup(table, position)))
     }
+}
+
+/// Whether a surface stands between a place and a light.
+fn is_hidden(scene: &Scene, centre: DVec3, from: Vec3, toward: &Toward) -> bool {
+    let (direction, distance) = match toward {
+        Toward::Direction(direction) => (*direction, f32::INFINITY),
+        Toward::Position(position) => ((*position - from).normalize_or_zero(), position.distance(from)),
+    };
+    let ray = Ray { origin: from.as_dvec3() + centre, direction: direction.as_dvec3() };
+    direction != Vec3::ZERO && scene.surfaces.stand_in(&ray, f64::from(distance))
 }
 
 /// Optical thickness from a place to a light, by steps as long as places are apart.

@@ -83,7 +83,7 @@ fn step_group(rays: &mut Rays, base: usize, volumes: &[FastVolume], tentative: &
 
     let (ix, iy, iz) = (group(&rays.ix, base), group(&rays.iy, base), group(&rays.iz, base));
     let tau = group(&rays.tau, base);
-    let mu_t = group(&rays.mu_t, base);
+    let rate = group(&rays.rate, base);
     let mut next_t = [0.0_f32; WIDTH];
     let mut next_tau = [0.0_f32; WIDTH];
     let mut majorant = [0.0_f32; WIDTH];
@@ -100,7 +100,7 @@ fn step_group(rays: &mut Rays, base: usize, volumes: &[FastVolume], tentative: &
         let least = t[l] + nudge[l];
         let exit = if exit > least { exit } else { least };
         let exit = smaller(exit, end[l]);
-        let m = mu_t[l] * if max[l] > 0.0 { max[l] } else { 0.0 };
+        let m = rate[l] * if max[l] > 0.0 { max[l] } else { 0.0 };
         let optical_thickness = m * (exit - t[l]);
         // Not `t < end`: a null collision may stand at the very end.
         let active = end[l] > 0.0;
@@ -142,6 +142,11 @@ pub(super) fn collide(rays: &mut Rays, volumes: &[FastVolume], tentative: &List,
         let v = ((bits & 0xffff_ffff) + 1) as f32 * (1.0 / (1_u64 << 32) as f32);
         rays.tau[i] = -tyndall_lanes::ln(v);
 
+        if rays.shadow[i] < 0.0 {
+            rays.null[i] = [null, u];
+            happened.push_if(i, true);
+            continue;
+        }
         let is_shadow = rays.shadow[i] > 0.0;
         let weight = rays.transmittance[i] * if is_shadow { null } else { 1.0 };
         let weak = weight < ROULETTE_WEIGHT;

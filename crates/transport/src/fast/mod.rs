@@ -5,23 +5,26 @@
 //! its pixel and its place goes to the next path. Paths do not touch each other and draw from random numbers of
 //! their own, so the picture does not depend on who shared a pool with whom.
 //!
-//! It differs from the reference in three ways, none of which changes an expected value: one random voxel in place of
-//! eight interpolated (see [`march`]), f32 relative to the scene's centre, and roulette on next-event estimation:
-//! a shadow ray whose contribution would be small is traced with a small probability and weighs the more. With a
-//! forward-peaked phase function most shadow rays are of that kind.
+//! It differs from the reference in four ways, none of which changes an expected value: one random voxel in place of
+//! eight interpolated (see [`march`]), f32 relative to the scene's centre, roulette before shadow rays ([`next_event`]), and,
+//! in thin grids, camera rays that bring light from every tentative collision ([`gather`]).
 //!
 //! Scenes of one homogeneous medium, or none, need no march and are traced otherwise ([`homogeneous`]).
 
 mod coarse;
+mod gather;
 mod homogeneous;
 mod light_cache;
 mod march;
+mod next_event;
 mod pool;
 mod sided;
 mod volume;
+mod work;
 
 pub(crate) use volume::FastScene;
 use volume::FastVolume;
+pub(crate) use work::Work;
 
 use crate::counters::{self, Event};
 use crate::emission::{path_weight, weighted_emission_along};
@@ -33,31 +36,16 @@ use crate::roulette::survival;
 use crate::shadow_catcher;
 use crate::way::{Span, is_plain};
 use crate::wide;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use march::List;
+use next_event::choose_direct;
 pub(crate) use pool::Pixel;
-use pool::{POOL, Path, Rays};
+use pool::{GATHERS, OWN, POOL, Path, Rays, SHADOW};
 use sided::{Direct, Sided, draw_light, light_of, lights_seen_at_once};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 use volume::Kind;
-
-/// Throughput below which roulette is played; survivors get twice this.
-const ROULETTE_THROUGHPUT: f32 = 0.25;
-
-/// A shadow ray is traced for certain if its contribution is this share of what the unweakened light would bring
-/// by isotropic scattering, and in proportion below. Efficiency 1/(error²·time) of the built-in cumulus and the
-/// Disney cloud is level to 5 % between 0.5 and 1; 2 loses a quarter to variance, 0.25 a tenth to time.
-const CERTAIN_CONTRIBUTION: f32 = 0.7;
-
-/// Where the light cache knows a transmittance T_c, the probability of a shadow ray is multiplied by this and by
-/// √(T_c (1 − T_c)), about the spread of what it may find, plus [`LEAST_DOUBT`]. Variance of scene A is level between 0.5
-/// and 2 and rises by a tenth at 0.25.
-const CERTAIN_DOUBT: f32 = 0.5;
-
-/// What the cache is trusted with at most: it holds for a place some voxels wide.
-const LEAST_DOUBT: f32 = 0.05;
 
 /// Rounds between two looks at whether the render was cancelled.
 const ROUNDS_BETWEEN_LOOKS: u32 = 256;
@@ -90,6 +78,7 @@ struct Engine<'a> {
     seen_at_once: Vec<usize>,
     work: Work,
     active: usize,
+    is_cancelled: bool,
 }
 
 /// What a path does next.
@@ -117,7 +106,7 @@ impl wide::Task for Engine<'_> {
         }
         let (mut tentative, mut left, mut happened) = (List::new(), List::new(), List::new());
         let mut round = 0_u32;
-        while self.active > 0 {
+        while self.active > 0 && !self.is_cancelled {
             let (clock, active) = (counters::clock(), self.active);
             march::step(&mut self.rays, &self.scene.volumes, &mut tentative, &mut left);
             march::collide(&mut self.rays, &self.scene.volumes, &tentative, &mut happened);
@@ -129,8 +118,11 @@ impl wide::Task for Engine<'_> {
             }
             for &slot in happened.slots() {
                 let slot = usize::from(slot);
-                let next = if self.rays.shadow[slot] > 0.0 {
-                    Next::Fly
+                if self.rays.shadow[slot] < 0.0 && self.gather_at(slot) {
+                    continue;
+                }
+                let next = if self.rays.shadow[slot] != 0.0 {
+                    Next::Finish
                 } else {
                     let volume = self.rays.volume[slot];
                     self.paths[slot].nearest = Some((volume, self.rays.t[slot]));
@@ -143,7 +135,7 @@ impl wide::Task for Engine<'_> {
                 return false;
             }
         }
-        true
+        !self.is_cancelled
     }
 }
 
@@ -168,6 +160,7 @@ impl<'a> Engine<'a> {
             seen_at_once: lights_seen_at_once(scene.scene),
             work: Work::default(),
             active: 0,
+            is_cancelled: false,
         }
     }
 
@@ -176,7 +169,7 @@ impl<'a> Engine<'a> {
     fn proceed(&mut self, slot: usize, mut next: Next) {
         loop {
             next = match next {
-                Next::Start => match self.work.next(self.tiles) {
+                Next::Start => match self.next_sample() {
                     Some((pixel, sample)) => self.start(slot, pixel, sample),
                     None => {
                         self.rays.end[slot] = 0.0;
@@ -188,12 +181,13 @@ impl<'a> Engine<'a> {
                 Next::Fly => {
                     self.paths[slot].nearest = None;
                     let end = if self.scene.is_sided { self.look_ahead(slot) } else { f32::INFINITY };
-                    self.begin_ray(slot, false, end)
+                    let kind = if self.paths[slot].gathers { GATHERS } else { OWN };
+                    self.begin_ray(slot, kind, end)
                 }
                 Next::LookAtLight => {
                     counters::count(Event::ShadowRay, 1);
                     let distance = self.paths[slot].light_distance;
-                    self.begin_ray(slot, true, distance)
+                    self.begin_ray(slot, SHADOW, distance)
                 }
                 Next::Enter(first) => match self.enter(slot, first) {
                     true => return,
@@ -209,23 +203,35 @@ impl<'a> Engine<'a> {
                         Next::Fly
                     }
                 }
+                Next::Finish if self.rays.shadow[slot] < 0.0 => self.finish_gathering(slot),
                 Next::Finish => {
                     counters::count(Event::Segment, 1);
                     if self.scene.shines {
                         self.gather(slot);
                     }
                     match self.paths[slot].nearest {
-                        Some((volume, distance)) => self.scatter(slot, volume as usize, distance),
+                        Some((volume, distance)) => self.scatter(slot, volume as usize, distance, false),
                         None if self.scene.is_sided => self.arrive(slot),
                         None => self.escape(slot),
                     }
                 }
-                Next::Record => {
-                    self.record(slot);
-                    Next::Start
-                }
+                Next::Record => match self.resume(slot) {
+                    Some(next) => next,
+                    None => {
+                        self.record(slot);
+                        Next::Start
+                    }
+                },
             };
         }
+    }
+
+    /// The next sample to begin, unless the render is cancelled. Asked for each path: through dense media without a grid
+    /// whole paths go by in a round.
+    #[inline(always)]
+    fn next_sample(&mut self) -> Option<(Pixel, u64)> {
+        self.is_cancelled |= self.cancel.load(Ordering::Relaxed);
+        if self.is_cancelled { None } else { self.work.next(self.tiles) }
     }
 
     #[inline(always)]
@@ -244,6 +250,7 @@ impl<'a> Engine<'a> {
             position: (ray.origin - self.scene.centre).as_vec3(),
             direction: ray.direction.as_vec3(),
             throughput: Vec3::ONE,
+            gathers: self.scene.gathers,
             ..Path::default()
         };
         if self.scene.is_sided {
@@ -255,8 +262,8 @@ impl<'a> Engine<'a> {
     }
 
     #[inline(always)]
-    fn begin_ray(&mut self, slot: usize, shadow: bool, end: f32) -> Next {
-        self.rays.shadow[slot] = f32::from(u8::from(shadow));
+    fn begin_ray(&mut self, slot: usize, kind: f32, end: f32) -> Next {
+        self.rays.shadow[slot] = kind;
         self.rays.transmittance[slot] = 1.0;
         self.rays.end[slot] = end;
         self.paths[slot].ray_end = end;
@@ -334,6 +341,7 @@ impl<'a> Engine<'a> {
                     rays.nudge[slot] =
                         (nudge / direction.abs().max_element()).max(4.0 * f32::EPSILON * leave);
                     rays.mu_t[slot] = mu_t;
+                    rays.rate[slot] = if rays.shadow[slot] < 0.0 { mu_t * gather::RATE } else { mu_t };
                     rays.volume[slot] = number as u32;
                     path.place = place as u32;
                     rays.tau[slot] = match shadow {
@@ -379,7 +387,7 @@ impl<'a> Engine<'a> {
 
     /// The path collides in `volume`: emission is gathered, a light is chosen, a direction drawn.
     #[inline(always)]
-    fn scatter(&mut self, slot: usize, number: usize, distance: f32) -> Next {
+    fn scatter(&mut self, slot: usize, number: usize, distance: f32, gathered: bool) -> Next {
         let volume = &self.scene.volumes[number];
         let path = &mut self.paths[slot];
         let random = &mut self.rays.random[slot];
@@ -388,17 +396,19 @@ impl<'a> Engine<'a> {
             None => (volume.albedo, volume.emission),
             Some(fields) => FastVolume::looked_up(fields, self.scene.to_world(path.position)),
         };
-        if path.turns == 0 {
+        if path.turns == 0 && !gathered {
             let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());
             path.first = Some(FirstMet { distance, albedo, ..FirstMet::default() });
         }
-        path.emission += path.throughput * emission * self.scene.glow_weight(path, number, emission);
+        if !gathered {
+            path.emission += path.throughput * emission * self.scene.glow_weight(path, number, emission);
+        }
         if self.scene.scene.max_depth.is_some_and(|depth| path.turns >= depth) {
             return Next::Record;
         }
         path.throughput *= albedo;
         let refraction = self.sided.get(slot).map_or(1.0, |sided| sided.refraction as f32);
-        if !survives_roulette(path, refraction, random) {
+        if !gathered && !survives_roulette(path, refraction, self.scene.roulette_throughput, random) {
             return Next::Record;
         }
         path.turns += 1;
@@ -408,7 +418,7 @@ impl<'a> Engine<'a> {
             Some(sided) => sided.collide(self.scene.scene, f64::from(distance)),
             None => self.scene.to_world(path.position),
         };
-        let traced = match choose_direct(self.scene, here, path, volume.phase, random) {
+        let traced = match choose_direct(self.scene, here, path, volume.phase, gathered, random) {
             // In f64: rounded, the end of the shadow ray might lie behind the lamp's own surface.
             Some((toward, distance)) if self.scene.is_sided => {
                 self.sided[slot].sees(self.scene.scene, toward, distance, random)
@@ -424,7 +434,14 @@ impl<'a> Engine<'a> {
         if let Some(sided) = self.sided.get_mut(slot) {
             sided.ray.direction = path.direction.as_dvec3().normalize();
         }
-        if traced { Next::LookAtLight } else { Next::Fly }
+        if gathered && !survives_roulette(path, refraction, self.scene.roulette_throughput, random) {
+            path.throughput = Vec3::ZERO;
+        }
+        match (traced, path.throughput == Vec3::ZERO) {
+            (true, _) => Next::LookAtLight,
+            (false, true) => Next::Record,
+            (false, false) => Next::Fly,
+        }
     }
 
     /// The path's ray has gone through all volumes to a surface, or past all: the surface's own light is gathered, a light
@@ -445,7 +462,7 @@ impl<'a> Engine<'a> {
             if vertex.is_shadow_catcher(scene) {
                 first.caught = Some(shadow_catcher::reflected(scene, &vertex, &sided.presence, random));
             }
-            path.first = Some(first);
+            path.first = path.first.or(Some(first));
             if first.caught.is_some() {
                 return Next::Record;
             }
@@ -487,7 +504,7 @@ impl<'a> Engine<'a> {
         let onward = vertex.sample(random).filter(|onward| {
             path.throughput *= onward.weight.truncate().as_vec3();
             sided.refraction *= onward.radiance_scale;
-            survives_roulette(path, sided.refraction as f32, random)
+            survives_roulette(path, sided.refraction as f32, self.scene.roulette_throughput, random)
         });
         match onward {
             Some(onward) => {
@@ -558,59 +575,12 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// Draws a light for the place `from`, and what it would bring by the next event; its direction and distance, or `None`
-/// if there is nothing to trace or roulette, played on the contribution before the shadow ray is paid for, ended it.
+/// Ends a path that is weaker than `threshold` with a probability that its survivors' weight makes up for; `refraction` is the
+/// part of the throughput that is no loss of light.
 #[inline(always)]
-fn choose_direct(
-    scene: &FastScene<'_>,
-    from: DVec3,
-    path: &mut Path,
-    phase: volume::Phase<'_>,
-    random: &mut Random,
-) -> Option<(DVec3, f64)> {
-    let before = path.direction;
-    let value = |toward: DVec3| {
-        let phase = f64::from(phase.value(before, toward.as_vec3()));
-        (DVec3::splat(phase), phase)
-    };
-    let direct = draw_light(scene.scene, from, value, path.draws, random);
-    let Direct { light, unshadowed, arriving, is_glow, toward, distance } = direct?;
-    let direct = path.throughput * unshadowed;
-    let strength = direct.max_element();
-    if strength <= 0.0 {
-        return None;
-    }
-    let isotropic = arriving.max_element() * 0.25 * std::f32::consts::FRAC_1_PI;
-    let mut traced = strength / (CERTAIN_CONTRIBUTION * isotropic);
-    let cached = scene.light_cache.as_ref();
-    let cached = cached.and_then(|cache| cache.transmittance(light, path.position));
-    if let Some(cached) = cached {
-        traced *= CERTAIN_DOUBT * ((cached * (1.0 - cached)).max(0.0).sqrt() + LEAST_DOUBT);
-        path.add_in_scattered(direct * cached);
-    }
-    let cached = cached.unwrap_or(0.0);
-    let mut boost = 1.0;
-    if traced < 1.0 {
-        if random.f32() >= traced {
-            counters::count(Event::ShadowSpared, 1);
-            return None;
-        }
-        boost = 1.0 / traced;
-    }
-    path.add_in_scattered(direct * (-cached * boost));
-    path.direct = direct * boost;
-    path.direct_is_glow = is_glow;
-    path.shadow_direction = toward.as_vec3();
-    path.light_distance = distance as f32;
-    Some((toward, distance))
-}
-
-/// Ends a weak path with a probability that its survivors' weight makes up for; `refraction` is the part of the throughput
-/// that is no loss of light.
-#[inline(always)]
-fn survives_roulette(path: &mut Path, refraction: f32, random: &mut Random) -> bool {
+fn survives_roulette(path: &mut Path, refraction: f32, threshold: f32, random: &mut Random) -> bool {
     let strength = path.throughput.max_element() / refraction;
-    let probability = survival(f64::from(strength), f64::from(ROULETTE_THROUGHPUT), path.turns) as f32;
+    let probability = survival(f64::from(strength), f64::from(threshold), path.turns) as f32;
     if probability < 1.0 && random.f32() >= probability {
         return false;
     }
@@ -624,36 +594,4 @@ fn keep_from_zero(direction: Vec3) -> Vec3 {
     let least = direction.abs().max_element() * 1e-12;
     let keep = |x: f32| if x.abs() < least { least } else { x };
     Vec3::new(keep(direction.x), keep(direction.y), keep(direction.z))
-}
-
-/// The samples of the tiles, one after the other.
-#[derive(Default)]
-pub(crate) struct Work {
-    tile: usize,
-    column: u32,
-    row: u32,
-    done: u64,
-}
-
-impl Work {
-    #[inline(always)]
-    pub(crate) fn next(&mut self, tiles: &[FilmTile]) -> Option<(Pixel, u64)> {
-        loop {
-            let tile = tiles.get(self.tile)?;
-            let (rect, samples) = (tile.rect(), tile.samples());
-            if samples.start + self.done < samples.end && self.row < rect.height {
-                let pixel = Pixel { tile: self.tile as u32, x: rect.x + self.column, y: rect.y + self.row };
-                let sample = samples.start + self.done;
-                self.column += 1;
-                if self.column == rect.width {
-                    (self.column, self.row) = (0, self.row + 1);
-                }
-                return Some((pixel, sample));
-            }
-            (self.column, self.row, self.done) = (0, 0, self.done + 1);
-            if samples.start + self.done >= samples.end {
-                (self.tile, self.done) = (self.tile + 1, 0);
-            }
-        }
-    }
 }

@@ -11,8 +11,19 @@ use crate::first_draws::FirstDraws;
 use crate::found_light::Turned;
 use crate::path_layers::FirstMet;
 
+use super::gather::Gathered;
+
 /// Paths in flight on a thread: enough that the loads of some hide behind the work of others.
 pub(super) const POOL: usize = 512;
+
+/// What a ray is for, in [`Rays::shadow`]: a path's own, that looks for a collision.
+pub(super) const OWN: f32 = 0.0;
+
+/// The camera's, that [gathers](super::gather) on its way.
+pub(super) const GATHERS: f32 = -1.0;
+
+/// A shadow ray.
+pub(super) const SHADOW: f32 = 1.0;
 
 /// State of the rays, in local voxel coordinates of the volume that each is in. Distances `t` are in world units.
 pub(super) struct Rays {
@@ -41,13 +52,17 @@ pub(super) struct Rays {
     pub nudge: [f32; POOL],
     /// μt at density 1 of the volume.
     pub mu_t: [f32; POOL],
+    /// What the bounds of cells are multiplied by to majorants: μt, or more.
+    pub rate: [f32; POOL],
     /// Majorant of the cell that the ray is in.
     pub majorant: [f32; POOL],
     /// Weight of ratio tracking; stays 1 on rays that look for a collision.
     pub transmittance: [f32; POOL],
-    /// 1 for shadow rays, 0 for rays that look for a collision.
+    /// [`SHADOW`], [`OWN`] or [`GATHERS`]: above, at or below 0.
     pub shadow: [f32; POOL],
     pub volume: [u32; POOL],
+    /// Probability that the last tentative collision of a gathering ray is null, and the number to decide it by.
+    pub null: [[f32; 2]; POOL],
     pub random: [Random; POOL],
 }
 
@@ -72,10 +87,12 @@ impl Rays {
             tau: zero,
             nudge: zero,
             mu_t: zero,
+            rate: zero,
             majorant: zero,
             transmittance: zero,
             shadow: zero,
             volume: [0; POOL],
+            null: [[0.0; 2]; POOL],
             random: [Random::default(); POOL],
         })
     }
@@ -118,6 +135,10 @@ pub(super) struct Path {
     pub multiple: Vec3,
     /// What the camera's ray met.
     pub first: Option<FirstMet>,
+    /// Whether its ray gathers light on its way.
+    pub gathers: bool,
+    /// What it has gathered.
+    pub gathered: Gathered,
 }
 
 impl Path {

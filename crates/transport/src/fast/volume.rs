@@ -6,10 +6,14 @@ use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 use tyndall_volumes::bricks::Bricks;
 use tyndall_volumes::{BrickGrid, Filter};
 
+use super::gather;
 use super::homogeneous::Homogeneous;
 use super::light_cache::LightCache;
 use super::pool::Path;
 use crate::emission::path_weight;
+
+/// Throughput below which paths play roulette in most scenes.
+const ROULETTE_THROUGHPUT: f32 = 0.25;
 
 /// Everything in f32 is kept relative to a point amid the volumes, so that a scene far from the origin loses no
 /// digits.
@@ -25,6 +29,10 @@ pub(crate) struct FastScene<'a> {
     pub has_volume_lights: bool,
     /// Roughly what gets through to some of the lights.
     pub light_cache: Option<LightCache>,
+    /// Whether camera rays [gather](super::gather).
+    pub(super) gathers: bool,
+    /// Throughput below which paths play roulette; survivors get twice this.
+    pub(super) roulette_throughput: f32,
     /// The scene without a pool, if it is homogeneous.
     pub(super) homogeneous: Option<Homogeneous<'a>>,
 }
@@ -74,9 +82,21 @@ impl<'a> FastScene<'a> {
         let has_volume_lights = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
         let is_sided = !scene.surfaces.is_empty();
         let homogeneous = Homogeneous::new(scene);
-        // What surfaces hide, the tables do not know.
-        let light_cache = if is_sided { None } else { LightCache::new(scene, centre) };
-        FastScene { scene, centre, volumes, shines, is_sided, has_volume_lights, light_cache, homogeneous }
+        let light_cache = LightCache::new(scene, centre);
+        let gathers = light_cache.as_ref().is_some_and(|cache| gather::pays(scene, &volumes, cache));
+        let roulette_throughput = if gathers { gather::ROULETTE_THROUGHPUT } else { ROULETTE_THROUGHPUT };
+        FastScene {
+            scene,
+            centre,
+            volumes,
+            shines,
+            is_sided,
+            has_volume_lights,
+            light_cache,
+            gathers,
+            roulette_throughput,
+            homogeneous,
+        }
     }
 
     /// Weight of the glow that a path has found at its collision in a volume, against next-event estimation.

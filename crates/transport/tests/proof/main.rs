@@ -19,5 +19,6 @@ mod slab;
 mod spectrum;
 mod statistics;
 mod surfaces;
+mod thin_grids;
 mod walk;
 mod white_furnace;
