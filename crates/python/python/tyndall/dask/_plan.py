@@ -54,9 +54,9 @@ class Goal:
         return samples if self.spp is None else min(samples, self.spp)
 
 
-LONGEST_BLOCK = 10.0
+LONGEST_BLOCK = 20.0
 """Seconds: a lost worker costs as much, and Ctrl-C or a new worker come between blocks."""
-SHORTEST_BLOCK = 1.0
+SHORTEST_BLOCK = 2.0
 """Seconds: sending and adding up a block should take little beside it."""
 
 
@@ -82,7 +82,7 @@ class Pace:
         1
         >>> pace.learn(1, 0.1)
         >>> pace.block(640, 4), pace.block(64, 4), pace.block(4, 4)
-        (100, 16, 10)
+        (160, 20, 20)
         """
         if self._block is not None:
             return self._block
