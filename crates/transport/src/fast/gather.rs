@@ -140,7 +140,6 @@ impl Engine<'_> {
         let behind = self.rays.transmittance[slot];
         self.rays.shadow[slot] = OWN;
         let path = &mut self.paths[slot];
-        path.gathers = false;
         let Gathered { weight, distance, .. } = path.gathered;
         path.gathered.pending = (weight > 0.0).then_some(Pending {
             position: path.position,

@@ -38,6 +38,16 @@ enum Toward {
     Position(Vec3),
 }
 
+impl Toward {
+    /// Direction and distance of the light from a place.
+    fn seen_from(&self, from: Vec3) -> (Vec3, f32) {
+        match self {
+            Toward::Direction(direction) => (*direction, f32::INFINITY),
+            Toward::Position(position) => ((*position - from).normalize_or_zero(), position.distance(from)),
+        }
+    }
+}
+
 impl LightCache {
     /// The tables of a scene, if any light of it can have one, its volumes are grids, no shape bounds them, and nothing passes
     /// through its surfaces.
@@ -90,20 +100,14 @@ impl LightCache {
 
 /// Whether a surface stands between a place and a light.
 fn is_hidden(scene: &Scene, centre: DVec3, from: Vec3, toward: &Toward) -> bool {
-    let (direction, distance) = match toward {
-        Toward::Direction(direction) => (*direction, f32::INFINITY),
-        Toward::Position(position) => ((*position - from).normalize_or_zero(), position.distance(from)),
-    };
+    let (direction, distance) = toward.seen_from(from);
     let ray = Ray { origin: from.as_dvec3() + centre, direction: direction.as_dvec3() };
     direction != Vec3::ZERO && scene.surfaces.stand_in(&ray, f64::from(distance))
 }
 
 /// Optical thickness from a place to a light, by steps as long as places are apart.
 fn optical_thickness(lattice: &Lattice, mu_t: &[f32], from: Vec3, toward: &Toward) -> f32 {
-    let (direction, length) = match toward {
-        Toward::Direction(direction) => (*direction, f32::INFINITY),
-        Toward::Position(position) => ((*position - from).normalize_or_zero(), position.distance(from)),
-    };
+    let (direction, length) = toward.seen_from(from);
     let exit = ((lattice.min - from) / direction).max((lattice.max - from) / direction).min_element();
     let length = length.min(exit);
     if length <= 0.0 || !length.is_finite() {

@@ -181,7 +181,8 @@ impl<'a> Engine<'a> {
                 Next::Fly => {
                     self.paths[slot].nearest = None;
                     let end = if self.scene.is_sided { self.look_ahead(slot) } else { f32::INFINITY };
-                    let kind = if self.paths[slot].gathers { GATHERS } else { OWN };
+                    let is_first = self.paths[slot].turns == 0;
+                    let kind = if is_first && self.scene.gathers { GATHERS } else { OWN };
                     self.begin_ray(slot, kind, end)
                 }
                 Next::LookAtLight => {
@@ -250,7 +251,6 @@ impl<'a> Engine<'a> {
             position: (ray.origin - self.scene.centre).as_vec3(),
             direction: ray.direction.as_vec3(),
             throughput: Vec3::ONE,
-            gathers: self.scene.gathers,
             ..Path::default()
         };
         if self.scene.is_sided {

@@ -135,8 +135,6 @@ pub(super) struct Path {
     pub multiple: Vec3,
     /// What the camera's ray met.
     pub first: Option<FirstMet>,
-    /// Whether its ray gathers light on its way.
-    pub gathers: bool,
     /// What it has gathered.
     pub gathered: Gathered,
 }
