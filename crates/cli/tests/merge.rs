@@ -2,15 +2,7 @@
 
 mod command;
 
-use command::Folder;
-
-/// A ball of fog, which is quick to build.
-const BALL: &str = r#"
-camera = { position = [0, 0, 4], target = [0, 0, 0] }
-film = { resolution = [16, 12] }
-volume = [{ sphere = { center = [0, 0, 0], radius = 1 }, mu_t = 4, albedo = 0.9 }]
-light = [{ type = "constant", radiance = 1 }]
-"#;
+use command::{BALL, Folder};
 
 fn folder() -> Folder {
     let folder = Folder::new();

@@ -8,6 +8,14 @@ use std::process::{Command, Output, Stdio};
 
 use tyndall_film::Accumulation;
 
+/// A ball of fog, which is quick to build and to render.
+pub const BALL: &str = r#"
+camera = { position = [0, 0, 4], target = [0, 0, 0] }
+film = { resolution = [16, 12] }
+volume = [{ sphere = { center = [0, 0, 0], radius = 1 }, mu_t = 4, albedo = 0.9 }]
+light = [{ type = "constant", radiance = 1 }]
+"#;
+
 /// A small cloud in even light: a hundredth of a second for some samples.
 pub const SCENE: &str = r#"
 [camera]
