@@ -13,7 +13,7 @@
 //!
 //! What the film is told of the first collision, its distance and albedo, is decided as in delta tracking.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use tyndall_scene::{Ray, Scene};
 
 use super::light_cache::LightCache;
@@ -87,10 +87,7 @@ impl Engine<'_> {
         let volume = &self.scene.volumes[rays.volume[slot] as usize];
         if share > 0.0 {
             let position = path.position + path.direction * distance;
-            let (albedo, emission) = match volume.fields {
-                None => (volume.albedo, volume.emission),
-                Some(fields) => FastVolume::looked_up(fields, self.scene.to_world(position)),
-            };
+            let (albedo, emission) = self.scene.albedo_and_emission(volume, position);
             if !path.gathered.has_collided && u >= null {
                 path.gathered.has_collided = true;
                 let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());
@@ -104,17 +101,13 @@ impl Engine<'_> {
             if let Some(cache) = &self.scene.light_cache
                 && self.scene.scene.max_depth != Some(0)
             {
-                let before = path.direction;
-                let value = |toward: DVec3| {
-                    let phase = f64::from(volume.phase.value(before, toward.as_vec3()));
-                    (DVec3::splat(phase), phase)
-                };
+                let value = volume.phase.turning(path.direction);
                 let here = self.scene.to_world(position);
                 let scene = self.scene.scene;
                 for number in cache.lights() {
                     let probability = scene.light_probability(number, here);
                     let chosen = (number, probability);
-                    let direct = light_of(scene, chosen, here, value, FirstDraws::Independent, random);
+                    let direct = light_of(scene, chosen, here, &value, FirstDraws::Independent, random);
                     if let Some(Direct { unshadowed, .. }) = direct.filter(|_| probability > 0.0) {
                         let through = cache.transmittance(number, position).unwrap_or_default();
                         path.single += (share * through * probability as f32) * albedo * unshadowed;

@@ -23,7 +23,6 @@ mod volume;
 mod work;
 
 pub(crate) use volume::FastScene;
-use volume::FastVolume;
 pub(crate) use work::Work;
 
 use crate::counters::{self, Event};
@@ -196,13 +195,8 @@ impl<'a> Engine<'a> {
                 },
                 Next::Finish if self.rays.shadow[slot] > 0.0 => {
                     self.add_direct(slot);
-                    if self.next_light(slot) {
-                        Next::LookAtLight
-                    } else if self.paths[slot].throughput == Vec3::ZERO {
-                        Next::Record
-                    } else {
-                        Next::Fly
-                    }
+                    let traced = self.next_light(slot);
+                    self.turned(slot, traced)
                 }
                 Next::Finish if self.rays.shadow[slot] < 0.0 => self.finish_gathering(slot),
                 Next::Finish => {
@@ -392,15 +386,12 @@ impl<'a> Engine<'a> {
         let path = &mut self.paths[slot];
         let random = &mut self.rays.random[slot];
         path.position += path.direction * distance;
-        let (albedo, emission) = match volume.fields {
-            None => (volume.albedo, volume.emission),
-            Some(fields) => FastVolume::looked_up(fields, self.scene.to_world(path.position)),
-        };
-        if path.turns == 0 && !gathered {
-            let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());
-            path.first = Some(FirstMet { distance, albedo, ..FirstMet::default() });
-        }
+        let (albedo, emission) = self.scene.albedo_and_emission(volume, path.position);
         if !gathered {
+            if path.turns == 0 {
+                let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());
+                path.first = Some(FirstMet { distance, albedo, ..FirstMet::default() });
+            }
             path.emission += path.throughput * emission * self.scene.glow_weight(path, number, emission);
         }
         if self.scene.scene.max_depth.is_some_and(|depth| path.turns >= depth) {
@@ -437,7 +428,13 @@ impl<'a> Engine<'a> {
         if gathered && !survives_roulette(path, refraction, self.scene.roulette_throughput, random) {
             path.throughput = Vec3::ZERO;
         }
-        match (traced, path.throughput == Vec3::ZERO) {
+        self.turned(slot, traced)
+    }
+
+    /// What a path does next that has turned, or been ended by roulette: its shadow ray first, if there is one.
+    #[inline(always)]
+    fn turned(&self, slot: usize, traced: bool) -> Next {
+        match (traced, self.paths[slot].throughput == Vec3::ZERO) {
             (true, _) => Next::LookAtLight,
             (false, true) => Next::Record,
             (false, false) => Next::Fly,
@@ -516,12 +513,7 @@ impl<'a> Engine<'a> {
             None => path.throughput = Vec3::ZERO,
         }
         let traced = traced || self.next_light(slot);
-        let path = &self.paths[slot];
-        match (traced, path.throughput == Vec3::ZERO) {
-            (true, _) => Next::LookAtLight,
-            (false, true) => Next::Record,
-            (false, false) => Next::Fly,
-        }
+        self.turned(slot, traced)
     }
 
     /// Turns to a light that waits to be looked at from the path's surface, if there is one.

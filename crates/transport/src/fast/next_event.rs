@@ -36,12 +36,7 @@ pub(super) fn choose_direct(
     gathered: bool,
     random: &mut Random,
 ) -> Option<(DVec3, f64)> {
-    let before = path.direction;
-    let value = |toward: DVec3| {
-        let phase = f64::from(phase.value(before, toward.as_vec3()));
-        (DVec3::splat(phase), phase)
-    };
-    let direct = draw_light(scene.scene, from, value, path.draws, random);
+    let direct = draw_light(scene.scene, from, phase.turning(path.direction), path.draws, random);
     let Direct { light, unshadowed, arriving, is_glow, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();

@@ -110,6 +110,15 @@ impl<'a> FastScene<'a> {
         path.turned.map_or(1.0, |from| path_weight(self.scene, volume, from, here, pdf) as f32)
     }
 
+    /// The albedo of a volume at a place, and what a collision there adds.
+    #[inline(always)]
+    pub fn albedo_and_emission(&self, volume: &FastVolume, position: Vec3) -> (Vec3, Vec3) {
+        match volume.fields {
+            None => (volume.albedo, volume.emission),
+            Some(fields) => looked_up(fields, self.to_world(position)),
+        }
+    }
+
     pub fn to_world(&self, position: Vec3) -> DVec3 {
         position.as_dvec3() + self.centre
     }
@@ -182,13 +191,13 @@ impl<'a> FastVolume<'a> {
             shines: (medium.emission_per_length != DVec3::ZERO).then_some(volume),
         }
     }
+}
 
-    /// The albedo at a place in the world, and what a collision there adds.
-    #[cold]
-    pub fn looked_up(volume: &Volume, position: DVec3) -> (Vec3, Vec3) {
-        let albedo = volume.albedo_at(position);
-        (albedo.as_vec3(), ((DVec3::ONE - albedo) * volume.emission_at(position)).as_vec3())
-    }
+/// The albedo at a place in the world, and what a collision there adds.
+#[cold]
+fn looked_up(volume: &Volume, position: DVec3) -> (Vec3, Vec3) {
+    let albedo = volume.albedo_at(position);
+    (albedo.as_vec3(), ((DVec3::ONE - albedo) * volume.emission_at(position)).as_vec3())
 }
 
 /// A phase function in f32, of which [`PhaseFunction`] is the oracle; the less common ones are left to it.
@@ -225,6 +234,15 @@ impl<'a> Phase<'a> {
                 INVERSE_SPHERE * (1.0 - g * g) / (denominator * denominator.sqrt())
             }
             Phase::Other(phase) => other_value(phase, before, after),
+        }
+    }
+
+    /// What next-event estimation asks of a collision on a ray: the value toward a direction, and the density of going on there.
+    #[inline(always)]
+    pub fn turning(self, before: Vec3) -> impl Fn(DVec3) -> (DVec3, f64) {
+        move |toward| {
+            let value = f64::from(self.value(before, toward.as_vec3()));
+            (DVec3::splat(value), value)
         }
     }
 
