@@ -237,6 +237,7 @@ def render(
     report: Callable[[Progress], object] | None,
     with_image: bool,
     with_error: bool = True,
+    in_one_pass: bool = False,
 ) -> Render:
     """What `tyndall.render` calls; `with_error=False` saves the look at every pixel that error and picture in the reports cost."""
 
