@@ -24,6 +24,7 @@ mod sample;
 mod summary;
 mod sums;
 mod tone_map;
+mod warnings;
 
 pub use accumulation_file::Accumulation;
 pub use atomic_write::{remove_leftovers, write_atomically};
@@ -39,3 +40,4 @@ pub use ranges::{RangeError, SampleRanges};
 pub use sample::{Layers, Sample};
 pub use summary::Summary;
 pub use tone_map::{srgb_signal, tone_map};
+pub use warnings::warnings;

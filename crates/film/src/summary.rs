@@ -35,7 +35,7 @@ pub struct Summary {
     pub mean: [Estimate; 3],
     /// See [`Film::median_relative_error`]; `null` if it is not known.
     pub median_relative_error: Option<f64>,
-    /// Samples that were not finite or too large and count as black.
+    /// Samples that were not finite or too large, and which all figures leave out; the picture may be biased by it.
     pub rejected: u64,
     /// Seed of the random numbers.
     pub seed: u64,
