@@ -84,7 +84,7 @@ impl Film {
     pub fn median_relative_error(&self) -> Option<f64> {
         let mut lit = false;
         let mut errors = Vec::new();
-        let any_hit = self.sums.pixels.iter().any(|pixel| pixel.hits > 0);
+        let any_hit = self.any_hit();
         self.for_each_pixel(|index, n| {
             if n == 0 && self.rejected_of(index) > 0 {
                 errors.push(f64::INFINITY);
@@ -212,6 +212,11 @@ impl Film {
         y as usize * self.width as usize + x as usize
     }
 
+    /// Whether any camera path met anything.
+    pub(crate) fn any_hit(&self) -> bool {
+        self.sums.pixels.iter().any(|pixel| pixel.hits > 0)
+    }
+
     fn rejected_of(&self, index: usize) -> u64 {
         self.sums.rejected.get(index).copied().unwrap_or(0).into()
     }
@@ -222,7 +227,7 @@ impl Film {
     }
 
     /// Calls `visit(index, number of samples in its sums)` for every pixel, row by row.
-    fn for_each_pixel(&self, mut visit: impl FnMut(usize, u64)) {
+    pub(crate) fn for_each_pixel(&self, mut visit: impl FnMut(usize, u64)) {
         let mut index = 0;
         for y in 0..self.height {
             for x in 0..self.width {
