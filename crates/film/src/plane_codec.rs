@@ -106,6 +106,18 @@ impl Record for u32 {
     }
 }
 
+impl Record for f32 {
+    const BYTES: usize = 4;
+
+    fn put(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+
+    fn get(bytes: &[u8]) -> Self {
+        f32::from_le_bytes(word(bytes, 0))
+    }
+}
+
 impl Record for i128 {
     const BYTES: usize = 16;
 

@@ -305,7 +305,13 @@ impl Render {
         py.detach(|| self.pictures.first().and_then(|picture| picture.film.median_relative_error()))
     }
 
-    /// Samples that were not finite or too large and count as black.
+    /// What has to be told along with the picture, where its stated errors do not hold; one line each.
+    #[getter]
+    fn warnings(&self, py: Python<'_>) -> Vec<String> {
+        py.detach(|| tyndall_film::warnings(self.pictures.iter().map(|picture| &picture.film)))
+    }
+
+    /// Samples that were not finite or too large; the picture leaves them out, and may be biased by it.
     #[getter]
     fn rejected(&self) -> u64 {
         self.pictures.iter().map(|picture| picture.film.rejected()).sum()

@@ -14,7 +14,8 @@ pub struct Goal {
     pub spp: Option<u32>,
     /// Only these samples of each pixel; `spp` does not matter then.
     pub samples: Option<Range<u64>>,
-    /// A median relative standard error of the pixels.
+    /// A median relative standard error of the pixels, which is reached once no more light than that can be
+    /// [unseen](Film::unseen_light).
     pub error: Option<f64>,
     /// A time from the start of this run.
     pub time: Option<Duration>,
@@ -112,7 +113,7 @@ impl Plan {
     fn error_is_reached(&self, pictures: &[Accumulation]) -> bool {
         let is_below = |film: &Film, goal: f64| {
             film.complete().count() >= LEAST_SAMPLES_FOR_ERROR
-                && film.median_relative_error().is_some_and(|error| error <= goal)
+                && film.error_against(goal).is_some_and(|error| error <= goal)
         };
         self.error.is_some_and(|goal| pictures.iter().all(|picture| is_below(&picture.film, goal)))
     }

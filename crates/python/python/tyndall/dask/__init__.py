@@ -152,8 +152,8 @@ def render(
     result = Render.from_accumulation(sums, exposure=watched.exposure, notes=scene.notes, complete=is_complete)
     for path in outputs:
         result.save(path)
-    if result.rejected:
-        warnings.warn(f"{result.rejected} samples were not finite or too large and count as black", stacklevel=2)
+    for warning in result.warnings:
+        warnings.warn(warning, stacklevel=2)
     return result
 
 
