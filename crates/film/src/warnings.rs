@@ -60,7 +60,7 @@ fn heavy_tail(film: &Film) -> Option<(f64, String)> {
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     // Two digits of 100 % or more are no longer two digits.
-    let decimals = (1.0 - percent.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let decimals = (1.0 - libm::log10(percent.abs()).floor()).clamp(0.0, 9.0) as usize;
     format!("{percent:.decimals$} %")
 }
 

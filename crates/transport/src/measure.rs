@@ -146,7 +146,7 @@ fn is_plane_parallel(volume: &Volume) -> bool {
 
 /// The unit vector at `theta` from +y and `phi` about it, degrees.
 fn direction_of([theta, phi]: [f64; 2]) -> DVec3 {
-    let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
-    let (sin_phi, cos_phi) = phi.to_radians().sin_cos();
+    let (sin_theta, cos_theta) = libm::sincos(theta.to_radians());
+    let (sin_phi, cos_phi) = libm::sincos(phi.to_radians());
     DVec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi)
 }

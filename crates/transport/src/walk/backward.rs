@@ -62,7 +62,7 @@ impl LightMeter<'_> {
         });
         let direct: DVec3 = lights.sum();
         let (tangent, bitangent) = normal.any_orthonormal_pair();
-        let (sin_azimuth, cos_azimuth) = (std::f64::consts::TAU * random.f64()).sin_cos();
+        let (sin_azimuth, cos_azimuth) = libm::sincos(std::f64::consts::TAU * random.f64());
         let sin_squared = random.f64();
         let direction = (tangent * cos_azimuth + bitangent * sin_azimuth) * sin_squared.sqrt()
             + normal * (1.0 - sin_squared).sqrt();

@@ -9,6 +9,7 @@ mod effort;
 mod emission;
 mod estimators;
 mod fast_spectral;
+mod golden;
 mod phase_functions;
 mod random_scenes;
 mod rendering;
