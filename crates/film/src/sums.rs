@@ -91,6 +91,19 @@ impl Sums {
         count.saturating_mul(size_of::<PixelSums>() + pixel)
     }
 
+    /// Memory that is taken by now.
+    pub fn taken_bytes(&self) -> usize {
+        size_of_val(&*self.pixels)
+            + size_of_val(&*self.depth)
+            + size_of_val(&*self.albedo)
+            + size_of_val(&*self.normal)
+            + size_of_val(&*self.object)
+            + size_of_val(&*self.catcher)
+            + size_of_val(&*self.emission)
+            + size_of_val(&*self.single)
+            + size_of_val(&*self.multiple)
+    }
+
     /// Adds a sample to the pixel at `index`; `false`, and nothing is added, if some number of it has no place in
     /// the sums (not finite, or too large).
     pub fn add(&mut self, index: usize, sample: &Sample, layers: Layers) -> bool {

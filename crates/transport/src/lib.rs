@@ -26,6 +26,7 @@ mod shadow_catcher;
 mod slots;
 mod spectral;
 mod surface_vertex;
+mod threads;
 pub mod transmittance;
 pub mod walk;
 mod way;
