@@ -60,7 +60,7 @@ fn mend(by: LimitedBy) -> &'static str {
     match by {
         LimitedBy::Option => "raise it, or give something smaller",
         LimitedBy::Variable => "raise it or --max-memory, or give something smaller",
-        LimitedBy::Machine => "give something smaller, or use a machine with more",
+        LimitedBy::Machine => "use a machine with more, or give something smaller",
         LimitedBy::ControlGroup | LimitedBy::AddressSpace | LimitedBy::Data => {
             "raise that, or give something smaller"
         }
