@@ -72,6 +72,7 @@ enum Done {
 }
 
 fn main() -> ExitCode {
+    save_address_space();
     let Cli { max_memory, command } = Cli::parse();
     match prepare(max_memory).and_then(|()| run(command)) {
         Ok(Done::All) => ExitCode::SUCCESS,
@@ -82,6 +83,25 @@ fn main() -> ExitCode {
         }
     }
 }
+
+/// Starts the program anew without arenas for each thread, if `ulimit -v` limits address space: of that, glibc reserves 64 MiB
+/// for each, whatever they use, and listens to this variable only when it starts (`mallopt(3)`).
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn save_address_space() {
+    use std::os::unix::process::CommandExt;
+    const VARIABLE: &str = "MALLOC_ARENA_MAX";
+    if !tyndall_machine::memory::address_space_is_limited() || std::env::var_os(VARIABLE).is_some() {
+        return;
+    }
+    let mut arguments = std::env::args_os();
+    let (Ok(program), Some(name)) = (std::env::current_exe(), arguments.next()) else { return };
+    // If it returns, it has failed, and all is as it was.
+    let _ = std::process::Command::new(program).arg0(name).args(arguments).env(VARIABLE, "1").exec();
+}
+
+/// Elsewhere nothing is known of such a waste.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+fn save_address_space() {}
 
 /// What holds for every command: limits of the machine, which are to end in messages.
 fn prepare(max_memory: Option<u64>) -> miette::Result<()> {

@@ -32,7 +32,7 @@ impl fmt::Display for LimitedBy {
             Self::Variable => VARIABLE,
             Self::Machine => "all that this machine has",
             Self::ControlGroup => "the memory limit of the control group",
-            Self::AddressSpace => "ulimit -v",
+            Self::AddressSpace => "ulimit -v, some of it kept for threads",
             Self::Data => "ulimit -d",
         })
     }

@@ -12,16 +12,20 @@ use std::sync::OnceLock;
 
 pub use crate::limit::LimitedBy;
 use crate::limit::{Limit, Limits};
-use crate::process::Usage;
+use crate::process::{ResourceLimits, Usage};
 use crate::size::shown_size;
 
 /// Requests below this are granted unasked: they are too many and too small to matter.
 pub const SMALL: u64 = 1 << 20;
-/// Address space that is left for stacks of threads and all that does not ask.
+/// Address space that is left for all that does not ask …
 const SPARE_ADDRESS_SPACE: u64 = 24 << 20;
+/// … and for the stack of each thread that renders.
+const THREAD_ADDRESS_SPACE: u64 = 3 << 20;
 
 /// What limits this process, found once; an environment that cannot be understood refuses whatever is asked for.
 static LIMITS: OnceLock<Result<Limits, String>> = OnceLock::new();
+/// How many threads render at once, as a rule.
+static THREADS: OnceLock<u64> = OnceLock::new();
 /// What the process had taken when it was first looked.
 static FIRST_USAGE: OnceLock<Option<Usage>> = OnceLock::new();
 
@@ -77,6 +81,11 @@ pub fn set_limit(bytes: Option<u64>) -> Result<(), MemoryError> {
     limits.as_ref().map(|_| ()).map_err(|what| MemoryError::Environment(what.clone()))
 }
 
+/// Whether address space is limited (`ulimit -v`): what is reserved then counts as if it were used.
+pub fn address_space_is_limited() -> bool {
+    ResourceLimits::now().address_space.is_some()
+}
+
 /// Asks for `bytes` of memory, before they are taken; `what` they are for is a plural, such as `512 bricks`.
 ///
 /// ```
@@ -118,7 +127,9 @@ pub fn ask_for(count: usize, bytes: usize, what: impl FnOnce() -> String) -> Res
 fn exceeded(bytes: u64, limits: &Limits, first: Usage, now: Usage) -> Option<(u64, Limit)> {
     let grown = now.data.saturating_sub(first.data);
     let taken = now.resident.max(first.resident.saturating_add(grown));
-    let address_space = now.address_space.saturating_add(SPARE_ADDRESS_SPACE);
+    let threads = THREADS.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from) as u64);
+    let spare = SPARE_ADDRESS_SPACE + threads * THREAD_ADDRESS_SPACE;
+    let address_space = now.address_space.saturating_add(spare);
     [(taken, limits.memory), (address_space, limits.address_space), (now.data, limits.data)]
         .into_iter()
         .filter_map(|(taken, limit)| Some((taken, limit?)))
@@ -149,10 +160,11 @@ mod tests {
     #[test]
     fn address_space_has_a_limit_of_its_own() {
         let by = LimitedBy::AddressSpace;
-        let address_space = Some(Limit { bytes: SPARE_ADDRESS_SPACE + 1000, by });
+        let address_space = Some(Limit { bytes: 1 << 40, by });
         let limits = Limits { address_space, ..limits(u64::MAX) };
-        assert_eq!(exceeded(100, &limits, FIRST, FIRST), None);
-        assert_eq!(exceeded(101, &limits, FIRST, FIRST).map(|(_, limit)| limit.by), Some(by));
+        assert_eq!(exceeded(1 << 39, &limits, FIRST, FIRST), None);
+        let beyond = (1 << 40) - SPARE_ADDRESS_SPACE;
+        assert_eq!(exceeded(beyond, &limits, FIRST, FIRST).map(|(_, limit)| limit.by), Some(by));
         assert!(exceeded(u64::MAX, &limits, FIRST, FIRST).is_some());
     }
 

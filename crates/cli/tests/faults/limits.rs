@@ -30,9 +30,9 @@ fn whatever_would_pass_the_limit_is_refused_with_the_sum() {
         let error = refused(&folder, &format!("exec tyndall --max-memory 60MB {line}"));
         assert!(error.contains(file) && error.contains(what), "{line}: {error}");
         assert!(error.contains("the limit is 60 MB (--max-memory)"), "{line}: {error}");
-        let by_variable = refused(&folder, &format!("TYNDALL_MAX_MEMORY=60MB exec tyndall {line}"));
-        assert!(by_variable.contains("the limit is 60 MB (TYNDALL_MAX_MEMORY)"), "{line}: {by_variable}");
     }
+    let error = refused(&folder, "TYNDALL_MAX_MEMORY=60MB exec tyndall inspect grid.toml");
+    assert!(error.contains("the limit is 60 MB (TYNDALL_MAX_MEMORY)"), "{error}");
     // The option is heard after the command as well, and goes before the variable.
     let enough = "TYNDALL_MAX_MEMORY=60MB exec tyndall inspect grid.toml --max-memory 1GB";
     assert_eq!(shell(&folder, enough).code, Some(0));
@@ -58,7 +58,7 @@ fn under_a_limit_on_address_space_all_works_or_says_why_not() {
         "render --set volume.0.procedural.resolution=64 --resolution 320x180 --spp 1 -o a.exr -o a.png";
     let (inspect, convert) = (format!("inspect {volume}"), format!("convert {volume} a.nvdb"));
     let mut codes = Vec::new();
-    for megabytes in [40, 60, 70, 80, 90, 100, 130, 160, 200, 300] {
+    for megabytes in [40, 60, 80, 100, 130, 2000] {
         for line in [&render, built_in, &inspect, &convert] {
             let run = shell(&folder, &format!("ulimit -v {}; exec tyndall {line}", megabytes * 1000));
             let is_told = run.code == Some(0) || run.code == Some(1) && is_refusal(&run.err);
