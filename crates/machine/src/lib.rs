@@ -1,4 +1,4 @@
-//! What Tyndall takes of the machine it runs on: [memory](memory) within a limit, [files](files) that have an end, and
+//! What Tyndall takes of the machine it runs on: [memory] within a limit, [files] that have an end, and
 //! files of its own that are [whole](write_atomically).
 //!
 //! Whatever is about to take memory in proportion to its input asks [`memory::ask`] first, and whatever reads a file
