@@ -265,8 +265,11 @@ fn a_checkpoint_of_another_scene_is_refused() {
 
 #[cfg(unix)]
 #[test]
-fn a_termination_request_saves_as_well() {
+fn a_termination_request_and_a_closed_terminal_save_as_well() {
     let folder = Folder::new();
-    assert_eq!(interrupt(&folder, "-o part.acc", 2, "-TERM"), Some(130));
-    assert!(folder.accumulation("part.acc").film.mean_sample_count() > 0.0);
+    for (name, code) in [("-TERM", 143), ("-HUP", 129)] {
+        assert_eq!(interrupt(&folder, "-o part.acc", 2, name), Some(code));
+        assert!(folder.accumulation("part.acc").film.mean_sample_count() > 0.0);
+        std::fs::remove_file(folder.path("part.acc")).unwrap();
+    }
 }

@@ -8,7 +8,6 @@
 #![forbid(unsafe_code)]
 
 mod accumulation_file;
-mod atomic_write;
 mod colours;
 pub mod comparison;
 mod error;
@@ -29,9 +28,8 @@ mod tone_map;
 mod warnings;
 
 pub use accumulation_file::Accumulation;
-pub use atomic_write::{remove_leftovers, write_atomically};
 pub use colours::{BandMean, Colours, named_channels};
-pub use error::FileError;
+pub use error::{FileError, write_atomically};
 pub use estimates::{Channel, Estimate, LUMINANCE};
 pub use exr_file::{write_bands_exr, write_exr};
 pub use film::{Film, FilmTile, MAX_PIXELS, MergeError, Rect, SizeError, TILE_EDGE};

@@ -8,8 +8,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::atomic_write::write_atomically;
-use crate::error::FileError;
+use crate::error::{FileError, write_atomically};
 use crate::film::Film;
 use crate::tone_map::{srgb_signal, tone_map};
 

@@ -9,6 +9,7 @@
 
 mod affine;
 mod error;
+mod include_chain;
 mod mesh;
 pub mod mitsuba;
 mod note;

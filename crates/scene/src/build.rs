@@ -173,7 +173,8 @@ fn build_volume(
             (atmosphere, DAffine3::IDENTITY)
         }
         VolumeSource::Procedural(ProceduralDescription::Cumulus { seed, resolution, center, size }) => {
-            let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size);
+            let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size)
+                .map_err(|error| SceneError::file(Path::new(&name), error.to_string()))?;
             let bricks = build_bricks(description, &grid, Path::new(&name), notes)?;
             grid_density(bricks, &grid)
         }

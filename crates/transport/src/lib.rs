@@ -28,6 +28,7 @@ mod shadow_catcher;
 mod slots;
 mod spectral;
 mod surface_vertex;
+mod threads;
 pub mod transmittance;
 pub mod walk;
 mod way;

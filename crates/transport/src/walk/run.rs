@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 
 use tyndall_lanes::Random;
 
+use crate::threads;
+
 use super::tally::{Estimate, MAX_PHOTONS, Scores, Tallies};
 
 /// Something that photons can be sent through.
@@ -107,12 +109,7 @@ fn send(walk: &impl Walk, pass: Range<u64>, options: &WalkOptions, cancel: &Atom
         }
         sum.lock().unwrap_or_else(std::sync::PoisonError::into_inner).merge(&tallies);
     };
-    std::thread::scope(|scope| {
-        for _ in 1..options.threads.max(1) {
-            scope.spawn(work);
-        }
-        work();
-    });
+    threads::share(options.threads, work);
     let sum = sum.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     (!cancel.load(Ordering::Relaxed)).then_some(sum)
 }

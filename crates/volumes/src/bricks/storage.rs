@@ -14,6 +14,17 @@ pub enum Storage {
     F32,
 }
 
+impl Storage {
+    /// Memory of a brick; those of halves may turn out to be of f32, where values are beyond what halves reach.
+    pub(super) fn brick_bytes(self) -> usize {
+        match self {
+            Self::U8 => LEAF_VOXELS + size_of::<[f32; 2]>(),
+            Self::F16 => 2 * LEAF_VOXELS,
+            Self::F32 => 4 * LEAF_VOXELS,
+        }
+    }
+}
+
 /// Bricks of one storage; kernels are compiled for each.
 pub trait BrickValues: Sync {
     /// Value of voxel `offset` (x << 6 | y << 3 | z) of brick `brick`.
@@ -144,12 +155,12 @@ impl Bricks {
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
-        self.count()
-            * match self {
-                Bricks::U8(_) => LEAF_VOXELS + 8,
-                Bricks::F16(_) => 2 * LEAF_VOXELS,
-                Bricks::F32(_) => 4 * LEAF_VOXELS,
-            }
+        let storage = match self {
+            Bricks::U8(_) => Storage::U8,
+            Bricks::F16(_) => Storage::F16,
+            Bricks::F32(_) => Storage::F32,
+        };
+        self.count() * storage.brick_bytes()
     }
 }
 
