@@ -49,7 +49,7 @@ mod tests {
         }
         assert_eq!(doubts(&tallies, [(0, "red")]), Vec::<String>::new());
         let lines = doubts(&tallies, [(0, "red"), (1, "green"), (2, "blue")]);
-        assert!(lines.len() == 1 && lines[0].starts_with("green: one photon makes 100 %"), "{lines:?}");
+        assert!(lines.len() == 1 && lines[0].starts_with("green: one photon makes 99 %"), "{lines:?}");
         assert!(doubts(&tallies, [(2, "blue")])[0].starts_with("none of 100 photons"));
         scores.add(0, f64::NAN);
         tallies.take(&mut scores);
