@@ -47,8 +47,9 @@ fn heavy_tail(film: &Film) -> Option<(f64, String)> {
         );
         return Some((unseen.bound, line));
     }
-    let largest =
-        film.largest_sample_share().filter(|&share| share > GREAT_SHARE && film.mean_sample_count() > 1.0)?;
+    // Of few samples each is a great part.
+    let samples = film.mean_sample_count() * f64::from(film.width()) * f64::from(film.height());
+    let largest = film.largest_sample_share().filter(|&share| share > GREAT_SHARE.max(10.0 / samples))?;
     let line = format!(
         "one sample makes {} of the picture's light: the error of its mean is known badly; more samples will tell (--spp)",
         percent(largest)

@@ -10,7 +10,7 @@ use glam::DVec3;
 use tyndall_lanes::Random;
 use tyndall_scene::{Channels, Ray, Scene};
 
-use super::run::Walk;
+use super::run::{Walk, values_error};
 use super::tally::{Estimate, Scores, Tallies};
 use crate::reference::trace;
 use crate::spectral::SpectralScene;
@@ -94,10 +94,6 @@ impl Walk for LightMeter<'_> {
     }
 
     fn relative_error(&self, tallies: &Tallies) -> f64 {
-        let values = self.values(tallies);
-        let greatest = |pick: fn(&Estimate) -> f64| values.iter().map(pick).fold(0.0, f64::max);
-        let (error, mean) = (greatest(|value| value.standard_error), greatest(|value| value.mean));
-        // Darkness is accepted after so many paths into it.
-        if mean > 0.0 { error / mean } else { 100.0 / tallies.photons() as f64 }
+        values_error(&self.values(tallies), tallies)
     }
 }
