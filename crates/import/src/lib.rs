@@ -11,6 +11,7 @@ mod error;
 mod mesh;
 pub mod mitsuba;
 mod note;
+mod packed;
 pub mod pbrt;
 mod sidecar;
 

@@ -5,8 +5,6 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use flate2::read::MultiGzDecoder;
-
 use super::context::Context;
 use super::directives::Directive;
 use super::place::Place;
@@ -14,6 +12,7 @@ use super::state::State;
 use super::tokens::Tokens;
 use super::world::World;
 use crate::ImportError;
+use crate::packed::unpacked;
 
 /// Files within files.
 const DEEPEST: usize = 64;
@@ -95,7 +94,7 @@ impl Files<'_> {
         (&mut file).take(left).read_to_end(&mut bytes)?;
         if bytes.starts_with(&[0x1f, 0x8b]) {
             let packed = std::mem::take(&mut bytes);
-            MultiGzDecoder::new(packed.as_slice()).take(left).read_to_end(&mut bytes)?;
+            unpacked(packed.as_slice(), packed.len() as u64).take(left).read_to_end(&mut bytes)?;
         }
         Ok(bytes)
     }
