@@ -33,7 +33,7 @@ impl SceneError {
     /// A problem with a file as a whole, such as an image that cannot be read.
     pub fn file(file: &Path, message: impl Into<String>) -> Self {
         Self::from(Problem {
-            file: file.display().to_string(),
+            file: one_line(file.display().to_string()),
             position: None,
             message: one_line(message),
             source: None,
@@ -59,7 +59,7 @@ impl Problem {
         let line = before.matches('\n').count() + 1;
         let column = before[line_start..].chars().count() + 1;
         Self {
-            file: text.name().to_owned(),
+            file: one_line(text.name()),
             position: Some((line, column)),
             message: one_line(message),
             source: Some((Arc::clone(text), span)),
@@ -68,7 +68,7 @@ impl Problem {
 
     /// A problem with a `--set` option, shown without a position: the option is one line.
     pub(crate) fn option(option: &str, message: impl Into<String>) -> Self {
-        Self { file: option.to_owned(), position: None, message: one_line(message), source: None }
+        Self { file: one_line(option), position: None, message: one_line(message), source: None }
     }
 }
 
