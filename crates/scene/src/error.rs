@@ -72,9 +72,15 @@ impl Problem {
     }
 }
 
-/// Messages quote what the file says, which may hold line breaks as escapes.
+/// Messages quote what the file says, which may hold line breaks as escapes and be of any length.
 fn one_line(message: impl Into<String>) -> String {
-    message.into().replace(char::is_control, " ")
+    const LONGEST: usize = 1000;
+    let mut line = message.into().replace(char::is_control, " ");
+    if let Some((end, _)) = line.char_indices().nth(LONGEST) {
+        line.truncate(end);
+        line.push('…');
+    }
+    line
 }
 
 impl From<Problem> for SceneError {
