@@ -13,6 +13,7 @@ mod include_chain;
 mod mesh;
 pub mod mitsuba;
 mod note;
+mod packed;
 pub mod pbrt;
 mod sidecar;
 
