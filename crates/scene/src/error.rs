@@ -33,7 +33,7 @@ impl SceneError {
     /// A problem with a file as a whole, such as an image that cannot be read.
     pub fn file(file: &Path, message: impl Into<String>) -> Self {
         Self::from(Problem {
-            file: file.display().to_string(),
+            file: one_line(file.display().to_string()),
             position: None,
             message: one_line(message),
             source: None,

@@ -11,7 +11,7 @@ use glam::DVec3;
 use image::{DynamicImage, ImageDecoder};
 
 use crate::error::SceneError;
-use crate::light::image_file::{check_size, read_exr, read_hdr};
+use crate::light::image_file::{check_size, read_exr, read_hdr, why_not_opened};
 
 /// A picture, row by row from the top.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +77,7 @@ impl Picture {
 
 fn read(path: &Path, srgb: Option<bool>) -> Result<Picture, String> {
     let io = |error: std::io::Error| error.to_string();
-    let mut file = BufReader::new(File::open(path).map_err(io)?);
+    let mut file = BufReader::new(File::open(path).map_err(|error| why_not_opened(&error))?);
     let length = file.get_ref().metadata().map_err(io)?.len();
     let mut magic = Vec::new();
     file.by_ref().take(4).read_to_end(&mut magic).map_err(io)?;
