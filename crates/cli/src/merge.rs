@@ -5,7 +5,7 @@ mod missing;
 use std::path::PathBuf;
 
 use miette::IntoDiagnostic;
-use tyndall_film::Accumulation;
+use tyndall_film::{Accumulation, warnings};
 use tyndall_session::{Output, check_input, check_writable, write_all};
 
 use crate::render::parse_exposure;
@@ -61,8 +61,8 @@ pub fn run(args: Args) -> miette::Result<()> {
     let film = &sum.film;
     let error = film.median_relative_error().filter(|e| e.is_finite());
     let error = error.map_or("unknown".into(), |e| format!("{:.3} %", 100.0 * e));
-    if film.rejected() > 0 {
-        tell(format!("note: {} samples were not finite or too large and count as black", film.rejected()));
+    for warning in warnings([film]) {
+        tell(format!("warning: {warning}"));
     }
     let written: String =
         args.output.iter().map(|output| format!("wrote {}\n", output.path().display())).collect();

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! 8 bytes   "TYNDALL\x1a"
-//! u32       version of the format, 2; files of version 1 have the first six planes only, and are read too
+//! u32       version of the format, 3
 //! u32       length of the header in bytes
 //! header    JSON: size, layers, planes, ranges of samples, progress of an interrupted pass, metadata
 //! blocks    for each plane, every 1000 pixels: u32 length, then LZ4 (block format)
@@ -12,8 +12,10 @@
 //! ```
 //!
 //! A plane holds one record a pixel: `pixels` 128 bytes (Σx of R, G, B as i128; Σx² of R, G, B as 192 bits; u64
-//! hits), `depth` 16, `albedo` 24, `emission`, `single` and `multiple` 48, `normal` 24, `object` 4 (u32), `catcher` 40
-//! (Σ of both lights as i128; u64 rays). Planes of zeros are left out. Before compression the bytes of a block are
+//! hits), `largest` 4 (greatest luminance of a sample, f32), `rejected` 4 (u32 samples that the sums leave out), `depth` 16,
+//! `albedo` 24, `emission`, `single` and `multiple` 48, `normal` 24, `object` 4 (u32), `catcher` 40 (Σ of both lights as
+//! i128; u64 rays). Planes of zeros are left out. Files of versions 1 and 2, which lack `largest` and counted rejected
+//! samples as black ones of unknown pixels, are refused: nothing in them tells how far their errors can be trusted. Before compression the bytes of a block are
 //! transposed, all first bytes of its records, then all second ones: the high bytes of neighbouring sums are equal, most
 //! of them zero, and compress well.
 
@@ -36,9 +38,7 @@ use crate::sums::Sums;
 const DAMAGED: &str = "is damaged or cut short; copy it again or render its samples anew";
 const NOT_ONE: &str = "is no .acc file of tyndall";
 const MAGIC: &[u8; 8] = b"TYNDALL\x1a";
-const VERSION: u32 = 2;
-/// The oldest version that is read.
-const OLDEST_VERSION: u32 = 1;
+const VERSION: u32 = 3;
 
 /// A film and how its samples were made: what an `.acc` file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,6 @@ struct Header {
     planes: Vec<Plane>,
     samples: SampleRanges,
     open: Option<OpenHeader>,
-    rejected: u64,
     metadata: ImageMetadata,
 }
 
@@ -71,6 +70,8 @@ struct OpenHeader {
 #[serde(rename_all = "lowercase")]
 enum Plane {
     Pixels,
+    Largest,
+    Rejected,
     Depth,
     Albedo,
     Emission,
@@ -133,6 +134,8 @@ impl Accumulation {
         let sums = &film.sums;
         let planes = [
             (Plane::Pixels, true),
+            (Plane::Largest, !sums.largest.is_empty()),
+            (Plane::Rejected, !sums.rejected.is_empty()),
             (Plane::Depth, !sums.depth.is_empty()),
             (Plane::Albedo, !sums.albedo.is_empty()),
             (Plane::Emission, !sums.emission.is_empty()),
@@ -149,7 +152,6 @@ impl Accumulation {
             planes: planes.iter().filter(|(_, present)| *present).map(|(plane, _)| *plane).collect(),
             samples: film.complete.clone(),
             open: film.open.as_ref().map(|pass| OpenHeader { start: pass.start, done: pass.done.clone() }),
-            rejected: film.rejected,
             metadata: self.metadata.clone(),
         };
         let json = serde_json::to_vec(&header)?;
@@ -162,6 +164,8 @@ impl Accumulation {
         for plane in header.planes {
             match plane {
                 Plane::Pixels => encode_plane(&mut file, &sums.pixels)?,
+                Plane::Largest => encode_plane(&mut file, &sums.largest)?,
+                Plane::Rejected => encode_plane(&mut file, &sums.rejected)?,
                 Plane::Depth => encode_plane(&mut file, &sums.depth)?,
                 Plane::Albedo => encode_plane(&mut file, &sums.albedo)?,
                 Plane::Emission => encode_plane(&mut file, &sums.emission)?,
@@ -201,12 +205,12 @@ impl Accumulation {
 }
 
 fn check_version(version: u32) -> Result<(), String> {
-    if (OLDEST_VERSION..=VERSION).contains(&version) {
+    if version == VERSION {
         return Ok(());
     }
     Err(format!(
-        "has version {version} of the .acc format, and this program reads versions {OLDEST_VERSION} to {VERSION}; use \
-         the program that wrote it"
+        "has version {version} of the .acc format, and this program reads version {VERSION}; use the program that wrote \
+         it, or render its samples anew"
     ))
 }
 
@@ -266,6 +270,8 @@ impl Header {
         for plane in &self.planes {
             match plane {
                 Plane::Pixels => decode_plane(blocks, &mut sums.pixels, count),
+                Plane::Largest => decode_plane(blocks, &mut sums.largest, count),
+                Plane::Rejected => decode_plane(blocks, &mut sums.rejected, count),
                 Plane::Depth => decode_plane(blocks, &mut sums.depth, count),
                 Plane::Albedo => decode_plane(blocks, &mut sums.albedo, count),
                 Plane::Emission => decode_plane(blocks, &mut sums.emission, count),
@@ -280,6 +286,9 @@ impl Header {
         if sums.pixels.is_empty() {
             return Err("has a bad header: the plane of pixels is missing".into());
         }
+        if !sums.largest.iter().all(|&luminance| (0.0..f32::INFINITY).contains(&luminance)) {
+            return Err("has a bad plane Largest: it holds what is no luminance".into());
+        }
         Ok(Film {
             width: self.width,
             height: self.height,
@@ -287,7 +296,6 @@ impl Header {
             sums,
             complete: self.samples.clone(),
             open: self.open.as_ref().map(|open| self.open_pass(open)).transpose()?,
-            rejected: self.rejected,
         })
     }
 

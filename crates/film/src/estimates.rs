@@ -4,6 +4,8 @@
 //! mean = Σx / n      standard error = sqrt(s² / n),  s² = (n Σx² − (Σx)²) / (n (n − 1))
 //! ```
 //!
+//! n counts the samples that are in the sums: not those that were rejected (see [`Film`]).
+//!
 //! Samples of a pixel are independent, so the standard error is that of the mean; for a few dozen samples and more
 //! an interval of ±1.96 of it covers the truth about 95 % of the time (central limit theorem).
 
@@ -37,18 +39,24 @@ pub struct Channel {
 impl Film {
     /// Mean radiance of pixel (`x`, `y`); 0 without samples.
     pub fn mean(&self, x: u32, y: u32) -> [f64; 3] {
-        self.pixel_mean(self.index(x, y), self.sample_count(x, y))
+        let index = self.index(x, y);
+        self.pixel_mean(index, self.good_samples(index, self.sample_count(x, y)))
     }
 
-    /// Standard error of the mean of pixel (`x`, `y`); infinite with fewer than two samples.
+    /// Standard error of the mean of pixel (`x`, `y`); infinite with fewer than two samples that were not rejected.
     pub fn standard_error(&self, x: u32, y: u32) -> [f64; 3] {
-        self.pixel_standard_error(self.index(x, y), self.sample_count(x, y))
+        let index = self.index(x, y);
+        self.pixel_standard_error(index, self.good_samples(index, self.sample_count(x, y)))
     }
 
-    /// Number of samples a pixel, the mean of all pixels.
+    /// Number of samples a pixel, those that were rejected among them; the mean of all pixels.
     pub fn mean_sample_count(&self) -> f64 {
         let mut total = 0.0;
-        self.for_each_pixel(|_, n| total += n as f64);
+        for y in 0..self.height {
+            for x in 0..self.width {
+                total += self.sample_count(x, y) as f64;
+            }
+        }
         total / self.sums.pixels.len() as f64
     }
 
@@ -71,13 +79,17 @@ impl Film {
     /// The error of luminance Y is taken as Σ w·SE over the channels, which is exact where the channels vary
     /// together (as they do where a medium is grey) and otherwise too large. Black pixels have no relative error
     /// and are left out. So are the pixels that no path met a medium or surface in, as long as any did: sky behind a
-    /// cloud is known at once and would hide the noise of the rest. Infinite while most pixels have fewer than two
-    /// samples.
+    /// cloud is known at once and would hide the noise of the rest. Pixels all of whose samples were rejected count as
+    /// wholly unknown. Infinite while most pixels have fewer than two samples.
     pub fn median_relative_error(&self) -> Option<f64> {
         let mut lit = false;
         let mut errors = Vec::new();
-        let any_hit = self.sums.pixels.iter().any(|pixel| pixel.hits > 0);
+        let any_hit = self.any_hit();
         self.for_each_pixel(|index, n| {
+            if n == 0 && self.rejected_of(index) > 0 {
+                errors.push(f64::INFINITY);
+                return;
+            }
             if any_hit && self.sums.pixels[index].hits == 0 {
                 return;
             }
@@ -105,8 +117,8 @@ impl Film {
 
     /// All layers under the names they have in an EXR file.
     ///
-    /// `R G B` mean radiance; `A` coverage plus shadow; `Transmittance` = 1 − coverage; `StandardError.*`; `SampleCount`;
-    /// and as far as they are kept, `Depth.Z` mean distance to the first collision or surface (+∞ where there was none),
+    /// `R G B` mean radiance; `A` coverage plus shadow; `Transmittance` = 1 − coverage; `StandardError.*`; `SampleCount`
+    /// those that these are over; and as far as they are kept, `Depth.Z` mean distance to the first collision or surface (+∞ where there was none),
     /// `Albedo.*` and `Normal.*` their means there (the normal of a collision counts as 0, and the mean is no unit
     /// vector), the mean radiance that media emit or scatter, `Emission.*`, `Single.*`, `Multiple.*`, `ObjectId.Id` the
     /// greatest number of the objects seen (exact up to 2^24), and `ShadowCatcher.A` the opacity of shadows.
@@ -200,12 +212,26 @@ impl Film {
         y as usize * self.width as usize + x as usize
     }
 
-    /// Calls `visit(index, number of samples)` for every pixel, row by row.
-    fn for_each_pixel(&self, mut visit: impl FnMut(usize, u64)) {
+    /// Whether any camera path met anything.
+    pub(crate) fn any_hit(&self) -> bool {
+        self.sums.pixels.iter().any(|pixel| pixel.hits > 0)
+    }
+
+    fn rejected_of(&self, index: usize) -> u64 {
+        self.sums.rejected.get(index).copied().unwrap_or(0).into()
+    }
+
+    /// How many of `held` samples are in the sums of the pixel. A file may claim more rejected ones than there are.
+    fn good_samples(&self, index: usize, held: u64) -> u64 {
+        held.saturating_sub(self.rejected_of(index))
+    }
+
+    /// Calls `visit(index, number of samples in its sums)` for every pixel, row by row.
+    pub(crate) fn for_each_pixel(&self, mut visit: impl FnMut(usize, u64)) {
         let mut index = 0;
         for y in 0..self.height {
             for x in 0..self.width {
-                visit(index, self.sample_count(x, y));
+                visit(index, self.good_samples(index, self.sample_count(x, y)));
                 index += 1;
             }
         }
@@ -275,6 +301,28 @@ mod tests {
         assert_eq!(film.mean(0, 0), [2.5; 3]);
         let expected = (5.0f64 / 3.0 / 4.0).sqrt();
         assert!((film.standard_error(0, 0)[0] - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn rejected_samples_are_left_out_of_every_mean_and_error() {
+        let grey = |x: f32| Sample { hit: true, depth: x, single: [x; 3], ..grey(x) };
+        let spoilt = [1.0, f32::NAN, 2.0, 3.0, f32::INFINITY, 4.0, -9e9].map(grey);
+        let (with, without) = (film(&[&spoilt]), film(&[&[1.0, 2.0, 3.0, 4.0].map(grey)]));
+        assert_eq!((with.rejected(), with.mean_sample_count()), (3, 7.0));
+        assert_eq!(with.channels(), without.channels());
+        assert_eq!(with.image_mean(), without.image_mean());
+        assert_eq!(with.median_relative_error(), without.median_relative_error());
+    }
+
+    #[test]
+    fn a_pixel_all_of_whose_samples_were_rejected_is_black_and_wholly_unknown() {
+        let film = film(&[&[f32::NAN; 4].map(grey)]);
+        assert_eq!((film.mean(0, 0), film.standard_error(0, 0)), ([0.0; 3], [f64::INFINITY; 3]));
+        assert_eq!(film.median_relative_error(), Some(f64::INFINITY));
+        assert_eq!(film.image_mean()[0].standard_error, f64::INFINITY);
+        let finite = |x: &f32| x.is_finite();
+        let of_light = |c: &Channel| !c.name.starts_with("StandardError") && c.name != "Depth.Z";
+        assert!(film.channels().iter().filter(|c| of_light(c)).all(|c| c.values.iter().all(finite)));
     }
 
     #[test]

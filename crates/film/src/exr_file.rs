@@ -3,7 +3,7 @@
 //! One part with one flat list of channels (`R`, `StandardError.R`, `Depth.Z`, …; see [`named_channels`]), all
 //! 32-bit float and linear, with Rec.709 primaries if it is a picture in RGB, ZIP-compressed in scan lines: the plainest form that the format
 //! has, so that every program reads it. Attributes: `seed`, `samples` (such as `0..64`), `sceneHash`, `options`
-//! (text), `seconds` (double), `rejected` (text) and the standard `software`. A crop is a data window in the display window
+//! (text), `seconds` (double), `rejected` (text), `unseenLight` (double, the bound of [`Film::stated_unseen_light`]) and the standard `software`. A crop is a data window in the display window
 //! of the whole picture. Format: OpenEXR file layout, openexr.com.
 
 use std::io::{Cursor, Write};
@@ -129,6 +129,9 @@ fn attributes(film: &Film, metadata: &ImageMetadata) -> LayerAttributes {
         attributes.other.insert(text(name), AttributeValue::Text(text(&value)));
     }
     attributes.other.insert(text("seconds"), AttributeValue::F64(metadata.seconds));
+    if let Some(unseen) = film.stated_unseen_light() {
+        attributes.other.insert(text("unseenLight"), AttributeValue::F64(unseen.bound));
+    }
     attributes
 }
 

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
+
 use crate::fixed_point::SquareSum;
 use crate::sums::{CatcherSums, PixelSums};
 
@@ -18,39 +20,65 @@ pub trait Record: Sized {
     fn get(bytes: &[u8]) -> Self;
 }
 
+/// Blocks that are coded at once, by all threads; memory is taken for so many.
+const AT_ONCE: usize = 256;
+
 /// Writes the blocks of a plane.
-pub fn encode_plane<T: Record>(file: &mut impl Write, plane: &[T]) -> io::Result<()> {
-    let mut records = Vec::with_capacity(BLOCK * T::BYTES);
-    for block in plane.chunks(BLOCK) {
-        records.clear();
-        block.iter().for_each(|record| record.put(&mut records));
-        let compressed = lz4_flex::block::compress(&transposed(&records, T::BYTES));
-        let length = u32::try_from(compressed.len()).map_err(io::Error::other)?;
-        file.write_all(&length.to_le_bytes())?;
-        file.write_all(&compressed)?;
+pub fn encode_plane<T: Record + Sync>(file: &mut impl Write, plane: &[T]) -> io::Result<()> {
+    for blocks in plane.chunks(AT_ONCE * BLOCK) {
+        let compressed: Vec<Vec<u8>> = blocks.par_chunks(BLOCK).map(encode_block).collect();
+        for block in compressed {
+            let length = u32::try_from(block.len()).map_err(io::Error::other)?;
+            file.write_all(&length.to_le_bytes())?;
+            file.write_all(&block)?;
+        }
     }
     Ok(())
 }
 
+fn encode_block<T: Record>(block: &[T]) -> Vec<u8> {
+    let mut records = Vec::with_capacity(block.len() * T::BYTES);
+    block.iter().for_each(|record| record.put(&mut records));
+    lz4_flex::block::compress(&transposed(&records, T::BYTES))
+}
+
 /// Reads the blocks of a plane of `count` records from the front of `blocks`. Memory grows only as blocks turn out
 /// to be there.
-pub fn decode_plane<T: Record>(blocks: &mut &[u8], plane: &mut Vec<T>, count: usize) -> Result<(), String> {
+pub fn decode_plane<T: Record + Send>(
+    blocks: &mut &[u8],
+    plane: &mut Vec<T>,
+    count: usize,
+) -> Result<(), String> {
     if !plane.is_empty() {
         return Err("it occurs twice".into());
     }
     while plane.len() < count {
-        let records = BLOCK.min(count - plane.len());
-        let (length, rest) = blocks.split_first_chunk().ok_or("a block is missing")?;
-        let (compressed, rest) =
-            rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or("a block is cut short")?;
-        *blocks = rest;
-        let bytes = lz4_flex::block::decompress(compressed, records * T::BYTES).map_err(|e| e.to_string())?;
-        if bytes.len() != records * T::BYTES {
-            return Err("a block has the wrong length".into());
+        let mut compressed = Vec::with_capacity(AT_ONCE);
+        let mut left = count - plane.len();
+        while left > 0 && compressed.len() < AT_ONCE {
+            let (length, rest) = blocks.split_first_chunk().ok_or("a block is missing")?;
+            let (block, rest) =
+                rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or("a block is cut short")?;
+            *blocks = rest;
+            let records = BLOCK.min(left);
+            compressed.push((block, records));
+            left -= records;
         }
-        plane.extend(transposed(&bytes, records).chunks_exact(T::BYTES).map(T::get));
+        let decoded: Vec<Vec<T>> = compressed
+            .par_iter()
+            .map(|(block, records)| decode_block(block, *records))
+            .collect::<Result<_, _>>()?;
+        decoded.into_iter().for_each(|records| plane.extend(records));
     }
     Ok(())
+}
+
+fn decode_block<T: Record>(compressed: &[u8], records: usize) -> Result<Vec<T>, String> {
+    let bytes = lz4_flex::block::decompress(compressed, records * T::BYTES).map_err(|e| e.to_string())?;
+    if bytes.len() != records * T::BYTES {
+        return Err("a block has the wrong length".into());
+    }
+    Ok(transposed(&bytes, records).chunks_exact(T::BYTES).map(T::get).collect())
 }
 
 /// A matrix of bytes with rows of `columns` becomes one with its columns as rows.
@@ -75,6 +103,18 @@ impl Record for u32 {
 
     fn get(bytes: &[u8]) -> Self {
         u32::from_le_bytes(word(bytes, 0))
+    }
+}
+
+impl Record for f32 {
+    const BYTES: usize = 4;
+
+    fn put(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+
+    fn get(bytes: &[u8]) -> Self {
+        f32::from_le_bytes(word(bytes, 0))
     }
 }
 

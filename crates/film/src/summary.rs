@@ -10,6 +10,7 @@ use crate::colours::{BandMean, Colours, band_means};
 use crate::error::FileError;
 use crate::estimates::Estimate;
 use crate::film::Film;
+use crate::heavy_tails::UnseenLight;
 use crate::metadata::ImageMetadata;
 use crate::ranges::SampleRanges;
 
@@ -35,7 +36,11 @@ pub struct Summary {
     pub mean: [Estimate; 3],
     /// See [`Film::median_relative_error`]; `null` if it is not known.
     pub median_relative_error: Option<f64>,
-    /// Samples that were not finite or too large and count as black.
+    /// See [`Film::stated_unseen_light`]; `null` if it is not known.
+    pub unseen_light: Option<UnseenLight>,
+    /// See [`Film::largest_sample_share`]; `null` of a black picture.
+    pub largest_sample_share: Option<f64>,
+    /// Samples that were not finite or too large, and which all figures leave out; the picture may be biased by it.
     pub rejected: u64,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -60,6 +65,8 @@ impl Summary {
             bands: Vec::new(),
             mean: film.image_mean(),
             median_relative_error: film.median_relative_error().filter(|e| e.is_finite()),
+            unseen_light: film.stated_unseen_light(),
+            largest_sample_share: film.largest_sample_share(),
             rejected: film.rejected(),
             seed: metadata.seed,
             scene_hash: metadata.scene_hash.clone(),
@@ -92,7 +99,16 @@ mod tests {
         let json = serde_json::to_value(Summary::new(&film, &ImageMetadata::default())).unwrap();
         assert_eq!(json["samples"], serde_json::json!([]));
         assert_eq!(json["mean"][0], serde_json::json!({"mean": 0.0, "standard_error": null}));
-        for key in ["median_relative_error", "rejected", "seconds", "seed", "scene_hash", "version"] {
+        for key in [
+            "median_relative_error",
+            "unseen_light",
+            "largest_sample_share",
+            "rejected",
+            "seconds",
+            "seed",
+            "scene_hash",
+            "version",
+        ] {
             assert!(json.get(key).is_some(), "{key}");
         }
     }

@@ -1,6 +1,7 @@
 //! `tyndall.Accumulation`: the exact sums of some samples, to be added to those of other samples of the same picture.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use numpy::PyArrayDyn;
 use pyo3::prelude::{Bound, PyAny, PyAnyMethods, PyRef, PyResult, Python, pyclass, pymethods};
@@ -23,33 +24,59 @@ use crate::pixels;
 /// True
 #[pyclass(module = "tyndall")]
 #[derive(Debug, Clone)]
-pub(crate) struct Accumulation(pub(crate) Sums);
+pub(crate) struct Accumulation {
+    /// A single one, in the vector that a `Render` holds too: they share it until samples are added.
+    pictures: Arc<Vec<Sums>>,
+}
+
+impl Accumulation {
+    /// The sums of a picture that is one film.
+    pub(crate) fn of_pictures(pictures: &Arc<Vec<Sums>>) -> Option<Self> {
+        (pictures.len() == 1).then(|| Self { pictures: Arc::clone(pictures) })
+    }
+
+    pub(crate) fn pictures(&self) -> &Arc<Vec<Sums>> {
+        &self.pictures
+    }
+
+    fn new(sums: Sums) -> Self {
+        Self { pictures: Arc::new(vec![sums]) }
+    }
+
+    fn sums(&self) -> &Sums {
+        &self.pictures[0]
+    }
+
+    fn sums_mut(&mut self) -> &mut Sums {
+        &mut Arc::make_mut(&mut self.pictures)[0]
+    }
+}
 
 #[pymethods]
 impl Accumulation {
     /// Reads an `.acc` file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| Sums::read(&path)).map(Self).map_err(of_picture)
+        py.detach(|| Sums::read(&path)).map(Self::new).map_err(of_picture)
     }
 
     /// The accumulation of `to_bytes`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
         let name = Path::new("bytes of an Accumulation");
-        py.detach(|| Sums::from_bytes(bytes, name)).map(Self).map_err(of_picture)
+        py.detach(|| Sums::from_bytes(bytes, name)).map(Self::new).map_err(of_picture)
     }
 
     /// The content of an `.acc` file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| self.0.to_bytes()).map_err(wrong)?;
+        let bytes = py.detach(|| self.sums().to_bytes()).map_err(wrong)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// Writes the sums (`.acc`), the picture (`.exr`, `.png`), or its numbers (`.json`).
     #[pyo3(signature = (path, exposure = 0.0))]
     fn save(&self, py: Python<'_>, path: PathBuf, exposure: f32) -> PyResult<()> {
-        pixels::save(py, &path, std::slice::from_ref(&self.0), exposure)
+        pixels::save(py, &path, &self.pictures, exposure)
     }
 
     /// Adds the samples of another.
@@ -60,21 +87,21 @@ impl Accumulation {
             ));
         }
         let (mut this, other) = (slf.try_borrow_mut()?, other.try_borrow()?);
-        add(slf.py(), &mut this.0, &other.0)
+        add(slf.py(), this.sums_mut(), other.sums())
     }
 
     fn __add__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
         let mut sum = self.clone();
-        add(py, &mut sum.0, &other.0)?;
+        add(py, sum.sums_mut(), other.sums())?;
         Ok(sum)
     }
 
     fn __eq__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> bool {
-        let other = &other.0;
+        let (this, other) = (self.sums(), other.sums());
         // Times differ from run to run.
         py.detach(|| {
-            self.0.film == other.film
-                && tyndall_film::ImageMetadata { seconds: 0.0, ..self.0.metadata.clone() }
+            this.film == other.film
+                && tyndall_film::ImageMetadata { seconds: 0.0, ..this.metadata.clone() }
                     == tyndall_film::ImageMetadata { seconds: 0.0, ..other.metadata.clone() }
         })
     }
@@ -82,49 +109,49 @@ impl Accumulation {
     /// Ranges of the samples that every pixel holds.
     #[getter]
     fn samples(&self) -> Vec<(u64, u64)> {
-        self.0.film.complete().clone().into()
+        self.sums().film.complete().clone().into()
     }
 
     /// Mean radiance, of shape (H, W, 3).
     #[getter]
     fn image<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        pixels::image(py, std::slice::from_ref(&self.0))
+        pixels::image(py, &self.pictures)
     }
 
     /// Its standard error.
     #[getter]
     fn standard_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        pixels::standard_error(py, std::slice::from_ref(&self.0))
+        pixels::standard_error(py, &self.pictures)
     }
 
     /// Median over the pixels of standard error over mean of luminance.
     #[getter]
     fn median_error(&self, py: Python<'_>) -> Option<f64> {
-        py.detach(|| self.0.film.median_relative_error())
+        py.detach(|| self.sums().film.median_relative_error())
     }
 
     /// Memory that it takes, at most.
     #[getter]
     fn nbytes(&self) -> usize {
-        self.0.film.bytes()
+        self.sums().film.bytes()
     }
 
     /// Hash of the scene.
     #[getter]
     fn scene_hash(&self) -> &str {
-        &self.0.metadata.scene_hash
+        &self.sums().metadata.scene_hash
     }
 
     /// Seed of the random numbers.
     #[getter]
     fn seed(&self) -> u64 {
-        self.0.metadata.seed
+        self.sums().metadata.seed
     }
 
     /// Time of rendering, summed over what was merged.
     #[getter]
     fn seconds(&self) -> f64 {
-        self.0.metadata.seconds
+        self.sums().metadata.seconds
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
@@ -133,7 +160,7 @@ impl Accumulation {
     }
 
     fn __repr__(&self) -> String {
-        let film = &self.0.film;
+        let film = &self.sums().film;
         format!("<tyndall.Accumulation {}x{}, samples {}>", film.width(), film.height(), film.complete())
     }
 }

@@ -7,7 +7,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -34,7 +34,7 @@ const REPORT: Duration = Duration::from_millis(200);
 #[pyclass(module = "tyndall", frozen)]
 #[derive(Debug)]
 pub(crate) struct Render {
-    pictures: Vec<Sums>,
+    pictures: Arc<Vec<Sums>>,
     exposure: f32,
     notes: Vec<String>,
     is_complete: bool,
@@ -57,9 +57,10 @@ pub(crate) struct Progress {
 }
 
 /// Renders; `report` is called with a `Progress` every now and then, with the picture in it if `with_image`. The
-/// error in it costs a look at every pixel, which `with_error = false` saves; then there is no picture either.
+/// error in it costs a look at every pixel, which `with_error = false` saves; then there is no picture either. What is
+/// interrupted `in_one_pass` may have pixels without a sample.
 #[pyfunction]
-#[pyo3(signature = (scene, *, spp, samples, error, time, seed, threads, report, with_image, with_error = true))]
+#[pyo3(signature = (scene, *, spp, samples, error, time, seed, threads, report, with_image, with_error = true, in_one_pass = false))]
 #[expect(clippy::too_many_arguments, reason = "Python calls it with names")]
 pub(crate) fn render(
     scene: &Bound<'_, Scene>,
@@ -72,6 +73,7 @@ pub(crate) fn render(
     report: Option<Py<PyAny>>,
     with_image: bool,
     with_error: bool,
+    in_one_pass: bool,
 ) -> PyResult<Render> {
     let py = scene.py();
     let goal = goal(spp, samples, error, time)?;
@@ -83,8 +85,11 @@ pub(crate) fn render(
     }
     let options = JobOptions { threads: threads.map(usize::from), ..JobOptions::default() };
     let mut job = py.detach(|| Job::of_ready(&input, &ready, &options)).map_err(of_session)?;
-    let plan = goal.plan(input.description().render.spp);
+    let mut plan = goal.plan(input.description().render.spp);
     let with_error = with_error && report.is_some();
+    if in_one_pass {
+        plan = plan.in_one_pass();
+    }
     let watch = Watch {
         control: Control::default(),
         start: Instant::now(),
@@ -98,7 +103,7 @@ pub(crate) fn render(
     let (outcome, stopped) = py.detach(|| watch.run(&mut job, &plan));
     let outcome = outcome.map_err(of_session)?;
     let notes = job.notes().to_vec();
-    let pictures = job.into_pictures();
+    let pictures = Arc::new(job.into_pictures());
     let is_there = pictures.iter().all(|picture| picture.film.mean_sample_count() > 0.0);
     match stopped {
         Some(stopped) if stopped.is_instance_of::<PyKeyboardInterrupt>(py) && is_there => {}
@@ -255,7 +260,7 @@ impl Render {
         notes: Vec<String>,
         complete: bool,
     ) -> Self {
-        Self { pictures: vec![accumulation.0.clone()], exposure, notes, is_complete: complete }
+        Self { pictures: Arc::clone(accumulation.pictures()), exposure, notes, is_complete: complete }
     }
 
     /// Mean radiance, linear: of shape (H, W, 3), or (H, W, N) of a picture of N bands.
@@ -300,7 +305,13 @@ impl Render {
         py.detach(|| self.pictures.first().and_then(|picture| picture.film.median_relative_error()))
     }
 
-    /// Samples that were not finite or too large and count as black.
+    /// What has to be told along with the picture, where its stated errors do not hold; one line each.
+    #[getter]
+    fn warnings(&self, py: Python<'_>) -> Vec<String> {
+        py.detach(|| tyndall_film::warnings(self.pictures.iter().map(|picture| &picture.film)))
+    }
+
+    /// Samples that were not finite or too large; the picture leaves them out, and may be biased by it.
     #[getter]
     fn rejected(&self) -> u64 {
         self.pictures.iter().map(|picture| picture.film.rejected()).sum()
@@ -337,10 +348,8 @@ impl Render {
     /// The exact sums, to be saved or merged with those of other samples.
     #[getter]
     fn accumulation(&self) -> PyResult<Accumulation> {
-        match self.pictures.as_slice() {
-            [picture] => Ok(Accumulation(picture.clone())),
-            _ => Err(wrong("accumulation: holds at most three bands; give fewer in film.bands")),
-        }
+        Accumulation::of_pictures(&self.pictures)
+            .ok_or_else(|| wrong("accumulation: holds at most three bands; give fewer in film.bands"))
     }
 
     /// Writes the picture (`.exr`, `.png`), its sums (`.acc`) or its numbers (`.json`).

@@ -14,7 +14,8 @@ pub struct Goal {
     pub spp: Option<u32>,
     /// Only these samples of each pixel; `spp` does not matter then.
     pub samples: Option<Range<u64>>,
-    /// A median relative standard error of the pixels.
+    /// A median relative standard error of the pixels, which is reached once no more light than that can be
+    /// [unseen](Film::unseen_light).
     pub error: Option<f64>,
     /// A time from the start of this run.
     pub time: Option<Duration>,
@@ -30,7 +31,7 @@ impl Goal {
             None => u64::from(scene_spp),
         };
         let samples = self.samples.clone().unwrap_or(0..spp);
-        Plan { samples, error: self.error, time: self.time, longest_pass: None }
+        Plan { samples, error: self.error, time: self.time, longest_pass: None, in_one_pass: false }
     }
 }
 
@@ -48,12 +49,19 @@ pub struct Plan {
     error: Option<f64>,
     time: Option<Duration>,
     longest_pass: Option<Duration>,
+    in_one_pass: bool,
 }
 
 impl Plan {
     /// The same, with passes of about this time at most, but of at least one sample a pixel.
     pub fn with_passes_up_to(self, time: Duration) -> Self {
         Self { longest_pass: Some(time), ..self }
+    }
+
+    /// The same in one pass, if the number of samples is known beforehand: for a picture that nobody looks at before it is
+    /// done. Each pass costs a turn of the film, and threads wait for each other at its end.
+    pub fn in_one_pass(self) -> Self {
+        Self { in_one_pass: self.spp().is_some() && self.error.is_none() && self.time.is_none(), ..self }
     }
 
     /// Samples of each pixel in all, if that is known beforehand.
@@ -84,7 +92,7 @@ impl Plan {
             return None;
         }
         // Passes grow with what is there, so that a stop rule is met to within a part of the work.
-        let mut pass = (held.count() / 4).clamp(1, LARGEST_PASS);
+        let mut pass = if self.in_one_pass { u64::MAX } else { (held.count() / 4).clamp(1, LARGEST_PASS) };
         if let Some(pace) = clock.pace(held.count()) {
             if let Some(longest) = self.longest_pass {
                 pass = pass.min((longest.as_secs_f64() / pace) as u64).max(1);
@@ -105,7 +113,7 @@ impl Plan {
     fn error_is_reached(&self, pictures: &[Accumulation]) -> bool {
         let is_below = |film: &Film, goal: f64| {
             film.complete().count() >= LEAST_SAMPLES_FOR_ERROR
-                && film.median_relative_error().is_some_and(|error| error <= goal)
+                && film.error_against(goal).is_some_and(|error| error <= goal)
         };
         self.error.is_some_and(|goal| pictures.iter().all(|picture| is_below(&picture.film, goal)))
     }
@@ -134,6 +142,16 @@ mod tests {
             film.complete_through(pass.end).unwrap();
         }
         assert_eq!(next, 51);
+    }
+
+    #[test]
+    fn one_pass_goes_to_the_end_of_the_range() {
+        let film = Film::new(1, 1, Layers::NONE).unwrap();
+        let pictures = [Accumulation { film, metadata: Default::default() }];
+        let plan = Goal { samples: Some(10..51), ..Goal::default() }.plan(64).in_one_pass();
+        assert_eq!(plan.next_pass(&pictures, &Clock::start(0.0, 0)), Some(10..51));
+        let plan = Goal { spp: Some(51), error: Some(0.1), ..Goal::default() }.plan(64).in_one_pass();
+        assert_eq!(plan.next_pass(&pictures, &Clock::start(0.0, 0)), Some(0..1));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use miette::{IntoDiagnostic, miette};
-use tyndall_film::Accumulation;
+use tyndall_film::{Accumulation, warnings};
 use tyndall_session::{Checkpoint, Job, Output, Plan, write_all};
 use tyndall_transport::{Control, Outcome, counters};
 
@@ -131,9 +131,8 @@ impl Target {
             film.height(),
             pictures.iter().map(|picture| picture.metadata.seconds).fold(0.0, f64::max)
         ));
-        let rejected: u64 = pictures.iter().map(|picture| picture.film.rejected()).sum();
-        if rejected > 0 {
-            tell(format!("note: {rejected} samples were not finite or too large and count as black"));
+        for warning in warnings(pictures.iter().map(|picture| &picture.film)) {
+            tell(format!("warning: {warning}"));
         }
         for output in &self.outputs {
             tell(format!("wrote {}", output.path().display()));

@@ -111,8 +111,8 @@ def render(
     if progress is True:
         for note in picture.notes[len(scene.notes) :]:
             say(f"note: {note}")
-    if picture.rejected:
-        warnings.warn(f"{picture.rejected} samples were not finite or too large and count as black", stacklevel=2)
+    for warning in picture.warnings:
+        warnings.warn(warning, stacklevel=2)
     if not picture.complete:
         warnings.warn(f"interrupted after {picture.samples:.4g} samples a pixel", stacklevel=2)
     return picture

@@ -185,8 +185,11 @@ class Render:
     def median_error(self) -> float | None:
         """Median over the pixels with medium of standard error over mean; `None` if the picture is black."""
     @property
+    def warnings(self) -> list[str]:
+        """What has to be told along with the picture, where its stated errors do not hold; one line each."""
+    @property
     def rejected(self) -> int:
-        """Samples that were not finite or too large and count as black."""
+        """Samples that were not finite or too large; the picture leaves them out, and may be biased by it."""
     @property
     def complete(self) -> bool:
         """Whether all that was asked for is there; not so after Ctrl-C."""
@@ -237,6 +240,7 @@ def render(
     report: Callable[[Progress], object] | None,
     with_image: bool,
     with_error: bool = True,
+    in_one_pass: bool = False,
 ) -> Render:
     """What `tyndall.render` calls; `with_error=False` saves the look at every pixel that error and picture in the reports cost."""
 

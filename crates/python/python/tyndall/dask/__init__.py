@@ -93,7 +93,7 @@ def render(
     the scene, and so the number of samples does not depend on the cluster either.
 
     A task renders `block` samples of each pixel, on as many `threads` as its worker has; unless given, so many that it takes two
-    to twenty seconds. Workers may come and go: what is lost with one is rendered again. A task that fails is tried `retries` times more.
+    to thirty seconds. Workers may come and go: what is lost with one is rendered again. A task that fails is tried `retries` times more.
 
     `progress` shows a bar; a function is called with a `Progress` every now and then, and with the picture so far every `refresh`
     seconds at most. Then it is also written to the files of `save` (`.exr`, `.png`, `.acc`, `.json`). Ctrl-C cancels what is under
@@ -152,8 +152,8 @@ def render(
     result = Render.from_accumulation(sums, exposure=watched.exposure, notes=scene.notes, complete=is_complete)
     for path in outputs:
         result.save(path)
-    if result.rejected:
-        warnings.warn(f"{result.rejected} samples were not finite or too large and count as black", stacklevel=2)
+    for warning in result.warnings:
+        warnings.warn(warning, stacklevel=2)
     return result
 
 

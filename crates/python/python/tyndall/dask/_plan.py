@@ -54,7 +54,7 @@ class Goal:
         return samples if self.spp is None else min(samples, self.spp)
 
 
-LONGEST_BLOCK = 20.0
+LONGEST_BLOCK = 30.0
 """Seconds: a lost worker costs as much, and Ctrl-C or a new worker come between blocks."""
 SHORTEST_BLOCK = 2.0
 """Seconds: sending and adding up a block should take little beside it."""
@@ -66,6 +66,11 @@ class Pace:
     def __init__(self, block: int | None) -> None:
         self._block = block
         self._seconds: float | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether blocks can be cut that suit the workers."""
+        return self._block is not None or self._seconds is not None
 
     def learn(self, samples: int, seconds: float) -> None:
         """Takes note of a block. Those that had to wait for the scene tell too much, so that a faster one counts in full."""

@@ -101,7 +101,10 @@ class Pool:
             self._roll_called = time.monotonic()
 
     def _hand_out(self) -> None:
-        slots = SLOTS_PER_WORKER * self._workers
+        # The first block tells how long the next may be.
+        slots = (SLOTS_PER_WORKER if self.pace.is_known else 1) * self._workers
+        # A worker alone has nobody to end together with.
+        alone = self._workers == 1
         free = slots - sum(len(picture.running) for picture in self.pictures)
         while free > 0:
             picture = next((picture for picture in self.pictures if picture.todo), None)
@@ -112,7 +115,7 @@ class Pool:
                 picture, self._next = self._next, self.open_next()
                 self.pictures.append(picture)
             # If others follow, there is no end to be met together.
-            sharers = slots if self._next is None else 1
+            sharers = slots if self._next is None and not alone else 1
             samples, attempt = picture.take(self.pace.block(picture.left, sharers))
             if picture.sent is None:
                 picture.sent = self._sending.send(picture.scene, to_all=self.is_shared)

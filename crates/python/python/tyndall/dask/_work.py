@@ -34,6 +34,10 @@ class Stopped(Exception):
     """Nobody wants the block any longer."""
 
 
+class AddedAlready(Exception):
+    """Sums are asked for again after others were added to what they were made of."""
+
+
 def render_block(
     outline: Outline, contents: Sequence[bytes], samples: tuple[int, int], seed: int | None, threads: int | None
 ) -> Accumulation | None:
@@ -64,6 +68,7 @@ def render_block(
                 report=look,
                 with_image=False,
                 with_error=False,
+                in_one_pass=True,
             )
         finally:
             bench.turn.release()
@@ -76,11 +81,18 @@ def render_block(
 
 
 def add(first: Accumulation, *others: Accumulation) -> Accumulation:
-    """The sums of all their samples. None of them changes: they may be needed again, for a worker that is lost."""
-    total = first + others[0]
-    for other in others[1:]:
-        total.merge(other)
-    return total
+    """The sums of all their samples, added to the first, which nobody looks at any more.
+
+    Should Dask want it a second time all the same, after a loss, that is refused, as it holds the samples already; then they are
+    rendered again.
+    """
+    try:
+        for other in others:
+            first.merge(other)
+    except Error as error:
+        # Not the user's, and so no `Error`.
+        raise AddedAlready(str(error)) from None
+    return first
 
 
 @dataclass
