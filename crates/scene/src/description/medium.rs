@@ -67,8 +67,8 @@ pub struct MediumDescription {
 const WAYS: &str = "give exactly one of the pairs `mu_t` + `albedo`, `mean_free_path` + `albedo`, \
                     `mean_free_path` + `reflectance`, `mu_a` + `mu_s`, a `preset`, or `particles`";
 
-/// Greatest extinction, as of the numbers that it is made from.
-const GREATEST: f64 = 1e12;
+/// Greatest extinction: products of a few such numbers stay finite.
+const GREATEST: f64 = 1e30;
 
 impl MediumDescription {
     /// The coefficients, per scene unit, in whichever way they were given; or the path of the key that is wrong (empty
@@ -140,7 +140,7 @@ impl MediumDescription {
             let key =
                 keys.into_iter().find_map(|(key, is_given)| is_given.then_some(key)).unwrap_or("preset");
             let message = format!(
-                "`{key}` makes the extinction {greatest:e}: mean free paths below 1e-12 scene units are not computed with"
+                "`{key}` makes the extinction {greatest:e}: numbers beyond 1e30 are not computed with"
             );
             return Err((vec![key], message));
         }

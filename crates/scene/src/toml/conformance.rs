@@ -15,8 +15,7 @@ use crate::suggestion::{did_you_mean, list_of, nearest};
 /// Greatest magnitude of any number: products of a few such numbers stay finite in double precision.
 const GREATEST: f64 = 1e30;
 
-/// Greatest length in scene units, and greatest coefficient per scene unit: squares and volumes stay finite in single
-/// precision.
+/// Greatest length in scene units: squares and volumes stay finite in single precision.
 const GREATEST_LENGTH: f64 = 1e12;
 
 /// Least length that must be above 0.
@@ -129,7 +128,7 @@ impl<'s> Check<'s> {
         }
     }
 
-    /// What is wrong with a length, or with what is per length.
+    /// What is wrong with a length.
     fn beyond_lengths(&self, name: &str, number: f64, must_be_above: Option<f64>) -> Option<String> {
         let (is_great, is_small) = (number.abs() > GREATEST_LENGTH, number < LEAST_LENGTH);
         match self.dimension {
@@ -139,9 +138,6 @@ impl<'s> Check<'s> {
             Dimension::Length if is_small && must_be_above.is_some() => Some(format!(
                 "{name} is {number:e}: what is shorter than 1e-12 scene units is not computed with; let a scene unit be \
                  shorter"
-            )),
-            Dimension::PerLength if is_great => Some(format!(
-                "{name} is {number:e}: mean free paths below 1e-12 scene units are not computed with; give a smaller number"
             )),
             _ => None,
         }
