@@ -34,8 +34,13 @@ impl Engine {
 pub enum Fate {
     /// By this line.
     Refused(String),
-    /// With a picture, in which every number is finite, and with this number of samples left out.
-    Rendered(u64),
+    /// With a picture, in which every number is finite.
+    Rendered {
+        /// Samples that were left out of it.
+        left_out: u64,
+        /// What was said of the scene.
+        notes: Vec<String>,
+    },
 }
 
 /// The fate of the scene of this text; or what is wrong with how it was dealt with.
@@ -52,11 +57,12 @@ pub fn fate(text: &str, folder: &Path, names: &[&str], engines: &[Engine]) -> Re
             return refusal(&error.to_string(), names);
         }
     };
-    let mut left_out = 0;
+    let (mut left_out, mut notes) = (0, Vec::new());
     for &engine in engines {
-        match picture(description.clone(), folder, engine) {
-            Ok(Ok(pictures)) => {
-                for picture in &pictures {
+        match rendered(description.clone(), folder, engine) {
+            Ok(Ok(job)) => {
+                notes.extend_from_slice(job.notes());
+                for picture in job.pictures() {
                     sound(picture, engine).map_err(|why| format!("{engine:?}: {why}"))?;
                     left_out += picture.film.rejected();
                 }
@@ -65,16 +71,15 @@ pub fn fate(text: &str, folder: &Path, names: &[&str], engines: &[Engine]) -> Re
             Err(why) => return Err(format!("{engine:?}: {why}")),
         }
     }
-    Ok(Fate::Rendered(left_out))
+    Ok(Fate::Rendered { left_out, notes })
 }
 
-/// The picture, after a look at the meters; or by which line the scene was refused as it was built.
-#[allow(clippy::type_complexity)]
-fn picture(
+/// The render, done, after a look at the meters; or by which line the scene was refused as it was built.
+fn rendered(
     mut description: SceneDescription,
     folder: &Path,
     engine: Engine,
-) -> Result<Result<Vec<Accumulation>, String>, String> {
+) -> Result<Result<Job, String>, String> {
     description.render.integrator =
         if engine == Engine::Reference { Integrator::Reference } else { Integrator::Fast };
     if engine == Engine::Spectral {
@@ -95,7 +100,7 @@ fn picture(
         let plan = Goal { spp: Some(2), ..Goal::default() }.plan(2);
         job.run(&plan, &Control::default(), |_| {}).map_err(|error| error.to_string())?;
     }
-    Ok(Ok(job.into_pictures()))
+    Ok(Ok(job))
 }
 
 fn refusal(message: &str, names: &[&str]) -> Result<Fate, String> {

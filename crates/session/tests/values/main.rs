@@ -8,8 +8,10 @@
 mod bad_values;
 mod base_scenes;
 mod files;
+mod half_space;
 mod judge;
 mod schema;
+mod special_scenes;
 mod watch;
 
 use std::collections::BTreeSet;
@@ -20,6 +22,7 @@ use base_scenes::{BASE_SCENES, REST};
 use files::write_files;
 use judge::{Engine, Fate, fate};
 use schema::{Leaves, Node};
+use special_scenes::{Expected, SPECIAL_SCENES, write_special_files};
 use toml::{Table, Value};
 use watch::Watch;
 
@@ -57,7 +60,7 @@ fn base_scenes_render() {
     write_files(folder.path());
     for (name, text) in BASE_SCENES {
         let fate = fate(&base_scene(text).to_string(), folder.path(), &[], &[Engine::Fast]);
-        assert_eq!(fate, Ok(Fate::Rendered(0)), "{name}");
+        assert!(matches!(fate, Ok(Fate::Rendered { left_out: 0, .. })), "{name}: {fate:?}");
     }
 }
 
@@ -93,7 +96,7 @@ fn bad_values_are_refused_with_their_key_or_render_finite_pictures() {
                 let names = names(&node, &scene, folder.path().to_str());
                 let fate = catch_unwind(AssertUnwindSafe(|| fate(&text, folder.path(), &names, engines)));
                 match fate {
-                    Ok(Ok(Fate::Rendered(left_out)))
+                    Ok(Ok(Fate::Rendered { left_out, .. }))
                         if left_out > 0
                             && !BRIGHT.iter().any(|key| node.path.iter().any(|other| other == key)) =>
                     {
@@ -107,6 +110,35 @@ fn bad_values_are_refused_with_their_key_or_render_finite_pictures() {
         }
     }
     assert!(wrong.is_empty(), "{} of {turn}:\n{}", wrong.len(), wrong.concat());
+}
+
+#[test]
+fn odd_scenes_are_rendered_or_refused_in_words() {
+    let folder = tempfile::tempdir().expect("a folder for test files");
+    write_files(folder.path());
+    write_special_files(folder.path());
+    let watch = Watch::start();
+    let mut wrong = String::new();
+    for (name, text, expected) in SPECIAL_SCENES {
+        watch.next(name);
+        let words = match expected {
+            Expected::Refused(words) => *words,
+            _ => "(none)",
+        };
+        let fate = fate(&base_scene(text).to_string(), folder.path(), &[words], &Engine::ALL);
+        let is_as_expected = match (&fate, expected) {
+            (Ok(Fate::Rendered { left_out: 0, .. }), Expected::Rendered) => true,
+            (Ok(Fate::Rendered { left_out: 0, notes }), Expected::Noted(words)) => {
+                notes.iter().any(|note| note.contains(words))
+            }
+            (Ok(Fate::Refused(_)), Expected::Refused(_)) => true,
+            _ => false,
+        };
+        if !is_as_expected {
+            wrong += &format!("{name}: {fate:?}\n");
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
 }
 
 /// The base scene of this text, with what it leaves out.
@@ -128,14 +160,15 @@ fn with_value(scene: &Table, node: &Node<'_>, bad: Value) -> String {
     toml::to_string(&scene).expect("a table")
 }
 
-/// What a refusal may be known by: the keys that lead to the value, those beside it, which it may contradict, or the folder
-/// of a file.
+/// What a refusal may be known by: the keys that lead to the value, those beside it, which it may contradict, what
+/// those name, or the folder of a file.
 fn names<'a>(node: &'a Node<'_>, scene: &'a Table, folder: Option<&'a str>) -> Vec<&'a str> {
     let keys = node.path.iter().map(String::as_str).filter(|key| key.parse::<usize>().is_err());
     let mut names: Vec<&str> = keys.chain(folder).collect();
     for length in 1..node.path.len() {
         if let Value::Table(table) = at(scene, &node.path[..length]) {
             names.extend(table.keys().map(String::as_str));
+            names.extend(table.values().filter_map(Value::as_str));
         }
     }
     names
