@@ -1,6 +1,9 @@
 //! What can be wrong with a file of pictures or sums.
 
+use std::io;
 use std::path::{Path, PathBuf};
+
+use tyndall_machine::Unfinished;
 
 /// Why a file cannot be read or written, as one line a user can act on.
 #[derive(Debug, thiserror::Error)]
@@ -31,4 +34,15 @@ impl FileError {
     pub(crate) fn unusable(path: &Path, what: impl Into<String>) -> Self {
         Self::Unusable { path: path.to_owned(), what: what.into() }
     }
+}
+
+/// Writes a file through `fill`, replacing what was there in one step.
+///
+/// # Errors
+/// If it cannot be written; what was there is then as before.
+pub fn write_atomically(
+    path: &Path,
+    fill: impl FnOnce(&mut Unfinished<'_>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    tyndall_machine::write_atomically(path, fill).map_err(|error| FileError::io(path, error))
 }

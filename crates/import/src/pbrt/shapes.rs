@@ -5,10 +5,10 @@
 //! out are put into the world; all else keeps its transform.
 
 use std::f64::consts::PI;
-use std::fs::File;
 
 use flate2::read::MultiGzDecoder;
 use glam::DVec3;
+use tyndall_machine::files;
 use tyndall_scene::description::{
     CylinderShape, DiscShape, MeshShape, RectangleShape, ShapeDescription, SphereShape,
 };
@@ -166,7 +166,7 @@ fn ply(shape: &Shape, context: &Context) -> Result<Geometry, ImportError> {
     let mut file = context.file(name, place)?;
     if file.ends_with(".gz") {
         let unreadable = |error: std::io::Error| place.error(format!("{file} cannot be read: {error}"));
-        let mut unpacked = MultiGzDecoder::new(File::open(&file).map_err(unreadable)?);
+        let mut unpacked = MultiGzDecoder::new(files::open(file.as_ref()).map_err(unreadable)?);
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".ply.gz");
         let path = context.sidecar.write_copy(stem, "ply", &mut unpacked)?;
         file = text_of(&path, place)?;

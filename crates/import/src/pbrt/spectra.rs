@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use tyndall_machine::files;
 use tyndall_optics::{Spectrum, cie};
 use tyndall_scene::description::{SpectrumDescription, SpectrumTable};
 
@@ -176,7 +177,7 @@ fn samples(parameter: &Parameter, context: &Context) -> Result<Samples, ImportEr
 /// Numbers in a text file, with comments after `#`.
 fn read_file(name: &str, parameter: &Parameter, context: &Context) -> Result<Vec<f64>, ImportError> {
     let path = context.path(name);
-    let bytes = std::fs::read(&path).map_err(|error| {
+    let bytes = files::read(&path).map_err(|error| {
         let message = format!("\"{name}\" is no spectrum known by name, and {}: {error}", path.display());
         parameter.error(&message)
     })?;

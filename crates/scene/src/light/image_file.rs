@@ -8,6 +8,7 @@ use std::path::Path;
 
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::ImageDecoder;
+use tyndall_machine::{files, memory};
 
 use super::image::LightImage;
 use crate::error::SceneError;
@@ -16,13 +17,16 @@ use crate::error::SceneError;
 /// is damaged, and memory for it must not be asked for.
 const TEXELS_A_BYTE: u64 = 4096;
 
+/// What a texel takes while it is read: as the file has it, and as three f32.
+const TEXEL_BYTES: u64 = 24;
+
 /// Texels of the largest picture that is read, 12 bytes each in memory.
 const GREATEST_TEXELS: u64 = 1 << 28;
 
 /// Reads a picture; with a warning if it had NaN, negative or infinite values, which are mended.
 pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), SceneError> {
     let refuse = |message: String| SceneError::file(path, message.replace('\n', " "));
-    let mut file = BufReader::new(File::open(path).map_err(|error| refuse(why_not_opened(&error)))?);
+    let mut file = BufReader::new(files::open(path).map_err(|error| refuse(why_not_opened(&error)))?);
     let length = file.get_ref().metadata().map_err(|error| refuse(error.to_string()))?.len();
     let mut magic = Vec::new();
     file.by_ref().take(4).read_to_end(&mut magic).map_err(|error| refuse(error.to_string()))?;
@@ -113,7 +117,10 @@ pub(crate) fn check_size(width: u64, height: u64, length: u64) -> Result<(), Str
         Some(texels) if texels > GREATEST_TEXELS => {
             Err(format!("has {width} x {height} texels; more than 268 million are not read: scale it down"))
         }
-        Some(texels) if texels <= length.saturating_mul(TEXELS_A_BYTE) => Ok(()),
+        Some(texels) if texels <= length.saturating_mul(TEXELS_A_BYTE) => {
+            memory::ask(texels.saturating_mul(TEXEL_BYTES), || format!("{width} x {height} texels"))
+                .map_err(|error| error.to_string())
+        }
         _ => Err(format!("claims {width} x {height} texels in {length} bytes: the file is damaged")),
     }
 }
