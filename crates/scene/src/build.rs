@@ -18,6 +18,7 @@ use crate::description::{
 };
 use crate::light::{LightTree, build_lights};
 use crate::mie::MieTables;
+use crate::precision::Precision;
 use crate::ready::light_probabilities;
 use crate::scene_files::{MemoryGrid, SceneFiles};
 use crate::surface::{Boundaries, Presence, Surfaces, VolumeNumber, build_surfaces, numbers_of};
@@ -78,6 +79,13 @@ pub fn build_with(
         .collect();
     volumes.retain(is_there);
     let mut surfaces = build_surfaces(description, folder, &numbers, &mut notes)?;
+
+    let size = 2.0 * scene_radius(&volumes, &surfaces);
+    if let Some(volume) = volumes.iter().find(|volume| volume.precision(size) == Precision::Beyond) {
+        let message = "is too dense for its size to compute with: light collides again before numbers tell the two places apart; give a \
+                       smaller extinction (`mu_t`, `mu_a`, `mu_s`, `scale`, or the density in its file)";
+        return Err(SceneError::file(Path::new(&volume.name), message));
+    }
 
     let mut lights = build_lights(&description.lights, folder)?;
     lights.add_lamps(&description.shapes, &mut surfaces)?;
@@ -355,7 +363,7 @@ fn element(raw_type: RawType) -> Element {
 }
 
 /// Radius of a sphere around the bounded volumes and surfaces.
-fn scene_radius(volumes: &[Volume], surfaces: &Surfaces) -> f64 {
+pub(crate) fn scene_radius(volumes: &[Volume], surfaces: &Surfaces) -> f64 {
     let boxes = volumes.iter().filter_map(Volume::world_box).chain(surfaces.bounds());
     let all = boxes.reduce(|[low, high], [min, max]| [low.min(min), high.max(max)]);
     all.map_or(1.0, |[min, max]| 0.5 * (max - min).length())

@@ -22,6 +22,7 @@ mod medium;
 mod mie;
 mod phase;
 mod phase_curve;
+mod precision;
 pub mod procedural;
 mod ready;
 mod rotation;

@@ -293,7 +293,7 @@ fn what_is_wrong_with_a_material_is_said_where_it_stands() {
         ("type = \"conductor\"\neta = 1", "scene.toml:7:1: `eta` and `k` belong together"),
         (
             "type = \"dielectric\"\nindex = \"watr\"",
-            "scene.toml:7:1: there is no substance `watr`, did you mean `water`?",
+            "scene.toml:7:1: `index`: there is no substance `watr`, did you mean `water`?",
         ),
         ("type = \"dielectric\"\nindex = 0.001", "`index` must be from 0.01 to 100"),
         ("type = \"dielectric\"\nindex = 0", "above 0"),

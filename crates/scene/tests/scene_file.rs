@@ -151,11 +151,11 @@ fn every_mistake_is_named_with_its_place_and_mend() {
         ),
         (
             format!("{volume}preset = 'Hole milk'"),
-            "scene.toml:6:1: there is no measured medium `Hole milk`, did you mean `Wholemilk`?",
+            "scene.toml:6:1: `preset`: there is no measured medium `Hole milk`, did you mean `Wholemilk`?",
         ),
         (
             format!("{volume}mu_t = 2\nalbedo = 1\nscale = 1e30"),
-            "scene.toml:8:1: the extinction becomes 2e30: numbers beyond 1e30 are not computed with",
+            "scene.toml:8:1: `scale` makes the extinction 2e30: numbers beyond 1e30 are not computed with",
         ),
         (
             format!("{volume}mu_t = 1\nalbedo = 1\nemission = 1\ntemperature = {{}}"),

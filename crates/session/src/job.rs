@@ -83,6 +83,7 @@ impl Job {
         let mut notes: Vec<String> = input.notes().iter().chain(&built.notes).cloned().collect();
         notes.extend(estimators.notes().iter().map(ToString::to_string));
         notes.extend(spectral_note(&built.scene));
+        notes.extend(precision_note(&built.scene, integrator));
         // When all that the scene takes is taken.
         films.iter().try_for_each(Film::ask_for_memory_to_come)?;
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
@@ -209,6 +210,14 @@ pub fn is_rendered(
 
 fn seen_by(scene: &Scene, observers: &[Observer]) -> Vec<Scene> {
     observers.iter().map(|observer| Scene { observer: *observer, ..scene.clone() }).collect()
+}
+
+fn precision_note(scene: &Scene, integrator: Integrator) -> Option<String> {
+    let volume = scene.too_dense_for_single_precision().filter(|_| integrator == Integrator::Fast)?;
+    Some(format!(
+        "{}: is so dense that it takes double precision: the integrator for one path at a time renders it",
+        volume.name
+    ))
 }
 
 fn spectral_note(scene: &Scene) -> Option<String> {

@@ -150,7 +150,10 @@ enum Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
+    /// The engines with many paths in flight compute in single precision: what is too dense for them is left to the others.
     fn new(scene: &'a Scene, integrator: Integrator) -> Self {
+        let is_dense = scene.too_dense_for_single_precision().is_some();
+        let integrator = if is_dense { Integrator::Reference } else { integrator };
         if scene.is_spectral() {
             let fast = if integrator == Integrator::Fast { FastSpectralScene::new(scene) } else { None };
             return match fast {

@@ -153,7 +153,7 @@ fn material(found: &mut Findings, material: &MaterialDescription, named: &[Named
         | MaterialDescription::ThinDielectric { index: IndexChoice::Name(name), .. }
         | MaterialDescription::Plastic { index: IndexChoice::Name(name), .. } => {
             if dielectric_index(name).is_none() {
-                found.report("index", no_substance(name));
+                found.report("index", format!("`index`: {}", no_substance(name)));
             }
         }
         MaterialDescription::Dielectric { index: IndexChoice::Number(index), .. }

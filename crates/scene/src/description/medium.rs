@@ -121,7 +121,8 @@ impl MediumDescription {
                     * unit_in_metres(unit).map_err(|message| {
                         (vec!["preset"], format!("a preset is in physical units: {message}"))
                     })?;
-                let measured = self.measured().map_err(|message| (vec!["preset"], message))?;
+                let measured =
+                    self.measured().map_err(|message| (vec!["preset"], format!("`preset`: {message}")))?;
                 let [mu_a, mu_s] = [measured.mu_a, measured.mu_s].map(|rgb| Spectrum::Rgb(rgb * per_mm));
                 SpectralCoefficients::AbsorptionAndScattering { mu_a, mu_s }
             }
@@ -130,12 +131,18 @@ impl MediumDescription {
         let coefficients = coefficients.scaled(self.scale.unwrap_or(1.0));
         let greatest = coefficients.mu_t_rgb().max_element();
         if !greatest.is_finite() || greatest > GREATEST {
-            let key = [("scale", self.scale.is_some()), ("mean_free_path", self.mean_free_path.is_some())];
-            let path =
-                key.into_iter().filter_map(|(key, is_given)| is_given.then_some(key)).take(1).collect();
-            let message =
-                format!("the extinction becomes {greatest:e}: numbers beyond 1e30 are not computed with");
-            return Err((path, message));
+            let keys = [
+                ("scale", self.scale.is_some()),
+                ("mean_free_path", self.mean_free_path.is_some()),
+                ("mu_t", self.mu_t.is_some()),
+                ("mu_s", self.mu_s.is_some()),
+            ];
+            let key =
+                keys.into_iter().find_map(|(key, is_given)| is_given.then_some(key)).unwrap_or("preset");
+            let message = format!(
+                "`{key}` makes the extinction {greatest:e}: numbers beyond 1e30 are not computed with"
+            );
+            return Err((vec![key], message));
         }
         Ok(coefficients)
     }

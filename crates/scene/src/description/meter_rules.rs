@@ -6,6 +6,9 @@ use super::meter::{GREATEST_COLUMNS, LEAST_COSINE};
 use super::rules::Findings;
 use super::{LayerMeterDescription, MeterDescription};
 
+/// Height of a layer over the width of its tile at most.
+const GREATEST_SLENDERNESS: f64 = 1e4;
+
 /// Reports what is wrong with each meter.
 pub(super) fn meters(found: &mut Findings, meters: &[MeterDescription]) {
     for (index, description) in meters.iter().enumerate() {
@@ -49,6 +52,14 @@ fn layer(found: &mut Findings, meter: &LayerMeterDescription) {
         && (x0 >= x1 || z0 >= z1)
     {
         found.report("periodic", "`periodic` is empty: write [x0, z0, x1, z1] with x0 < x1 and z0 < z1");
+    } else if let Some([x0, z0, x1, z1]) = meter.periodic
+        && meter.top - meter.bottom > GREATEST_SLENDERNESS * (x1 - x0).min(z1 - z0)
+    {
+        let message = format!(
+            "the layer is more than {GREATEST_SLENDERNESS} times as high as the tile `periodic` is wide, and light crosses \
+             tile after tile: take `bottom` and `top` nearer together, or several tiles as one"
+        );
+        found.report("periodic", message);
     }
     match meter.columns {
         Some(_) if meter.periodic.is_none() => {

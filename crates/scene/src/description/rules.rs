@@ -166,7 +166,7 @@ fn medium_rules(found: &mut Findings, medium: &MediumDescription, unit: &str) {
         [("emission", &medium.emission), ("emission_per_length", &medium.emission_per_length)]
     {
         if let Some(emission) = emission {
-            light_spectrum(found, key, emission);
+            light_spectrum(found, key, emission, 1.0);
         }
     }
     if let Some((key, message)) = medium.phase.as_ref().and_then(PhaseDescription::violation) {
@@ -174,20 +174,64 @@ fn medium_rules(found: &mut Findings, medium: &MediumDescription, unit: &str) {
     }
 }
 
+/// Mean free path beyond which a ray without end has no number for its place.
+const LONGEST_MEAN_FREE_PATH: f64 = 1e12;
+
 /// A ray through empty space that shines would gather light without end.
 fn fills_all_space(found: &mut Findings, medium: &MediumDescription, unit: &str) {
     let Ok(coefficients) = medium.coefficients(unit, 0.0) else { return };
-    if medium.emission_per_length.is_some() && coefficients.mu_t_rgb().min_element() <= 0.0 {
+    let mu_t = coefficients.mu_t_rgb();
+    let least = mu_t.to_array().into_iter().filter(|mu_t| *mu_t > 0.0).fold(f64::INFINITY, f64::min);
+    if least < 1.0 / LONGEST_MEAN_FREE_PATH {
+        let message = format!(
+            "[medium] fills all space with an extinction of {least:e}: light goes further through it than is computed with; \
+             give 0, or 1e-12 and more"
+        );
+        found.report("", message);
+    }
+    let per_length = medium.emission_per_length.as_ref().and_then(|spectrum| spectrum.light().ok());
+    if let Some(brightest) = per_length.map(|light| (light.light_rgb() / mu_t).max_element())
+        && brightest.is_finite()
+        && brightest > BRIGHTEST
+    {
+        let message = format!(
+            "`emission_per_length` shines as {brightest:e} in a medium that fills all space, and pictures hold numbers up to \
+             4e9: give it a greater extinction"
+        );
+        found.report("emission_per_length", message);
+    }
+    if medium.emission_per_length.is_some() && mu_t.min_element() <= 0.0 {
         let message = "a medium that fills all space and does not weaken light would shine without end: \
                        give it an extinction above 0";
         found.report("emission_per_length", message);
     }
 }
 
-pub(super) fn light_spectrum(found: &mut Findings, key: &'static str, spectrum: &SpectrumDescription) {
-    if let Err((inner, message)) = spectrum.light() {
-        report_at(found, &[key, inner], format!("`{key}`: {message}"));
+/// The film holds numbers below 2^32.
+const BRIGHTEST: f64 = 4.29e9;
+
+/// `scale` is a factor on the light.
+pub(super) fn light_spectrum(
+    found: &mut Findings,
+    key: &'static str,
+    spectrum: &SpectrumDescription,
+    scale: f64,
+) {
+    match spectrum.light() {
+        Err((inner, message)) => report_at(found, &[key, inner], format!("`{key}`: {message}")),
+        Ok(light) => {
+            // What point lights and what shines along a way are seen as depends on lengths.
+            let is_seen_as_it_is = matches!(key, "radiance" | "irradiance" | "emission");
+            let brightest = scale * light.light_rgb().max_element();
+            if is_seen_as_it_is && brightest > BRIGHTEST {
+                found.report(key, too_bright(key, brightest));
+            }
+        }
     }
+}
+
+fn too_bright(key: &str, brightest: f64) -> String {
+    format!("`{key}` is {brightest:e}, and pictures hold numbers up to 4e9: give all lights in a larger unit")
 }
 
 /// Reports the key at the end of a path of tables; empty keys are none.
@@ -201,6 +245,13 @@ fn report_at(found: &mut Findings, path: &[&str], message: String) {
 
 fn volume(found: &mut Findings, volume: &VolumeDescription, unit: &str) {
     medium_rules(found, &volume.medium, unit);
+    if let (Some(emission), Some(scale)) = (&volume.medium.emission, volume.emission_scale)
+        && let Ok(light) = emission.light()
+        && scale * light.light_rgb().max_element() > BRIGHTEST
+    {
+        let brightest = scale * light.light_rgb().max_element();
+        found.report("emission_scale", too_bright("emission_scale", brightest));
+    }
     fields(found, volume);
     if let Some(transform) = &volume.transform {
         found.within("transform", |found| transform_is_invertible(found, transform, "volume"));
@@ -291,18 +342,18 @@ fn light(found: &mut Findings, light: &LightDescription) {
     match light {
         LightDescription::Sun(sun) => {
             found.report_zero("direction", sun.direction);
-            light_spectrum(found, "irradiance", &sun.irradiance);
+            light_spectrum(found, "irradiance", &sun.irradiance, 1.0);
         }
         LightDescription::Distant(distant) => {
             found.report_zero("direction", distant.direction);
-            light_spectrum(found, "irradiance", &distant.irradiance);
+            light_spectrum(found, "irradiance", &distant.irradiance, 1.0);
         }
         LightDescription::Sky(description) => sky(found, description),
-        LightDescription::Constant(constant) => light_spectrum(found, "radiance", &constant.radiance),
-        LightDescription::Point(point) => light_spectrum(found, "intensity", &point.intensity),
+        LightDescription::Constant(constant) => light_spectrum(found, "radiance", &constant.radiance, 1.0),
+        LightDescription::Point(point) => light_spectrum(found, "intensity", &point.intensity, 1.0),
         LightDescription::Spot(spot) => {
             found.report_zero("direction", spot.direction);
-            light_spectrum(found, "intensity", &spot.intensity);
+            light_spectrum(found, "intensity", &spot.intensity, 1.0);
             if spot.inner_angle > spot.angle {
                 found.report(
                     "inner_angle",
@@ -319,6 +370,9 @@ fn light(found: &mut Findings, light: &LightDescription) {
 }
 
 fn sky(found: &mut Findings, sky: &SkyDescription) {
+    if sky.intensity > BRIGHTEST {
+        found.report("intensity", too_bright("intensity", sky.intensity));
+    }
     let Some(toward_sun) = sky.toward_sun else { return };
     found.report_zero("toward_sun", toward_sun);
     for (key, is_given) in
@@ -329,7 +383,9 @@ fn sky(found: &mut Findings, sky: &SkyDescription) {
         }
     }
     if sky.toward_sun().y < libm::sin((-6.1_f64).to_radians()) {
-        found
-            .report("toward_sun", "the sun is more than 6 degrees below the horizon, where the sky is night");
+        found.report(
+            "toward_sun",
+            "`toward_sun`: the sun is more than 6 degrees below the horizon, where the sky is night",
+        );
     }
 }

@@ -59,7 +59,9 @@ fn shape(found: &mut Findings, shape: &ShapeDescription, scene: &SceneDescriptio
             let message = "a surface of `null` is not there, and cannot shine: give another `material`";
             found.report("emission", message);
         }
-        found.within("emission", |found| light_spectrum(found, "radiance", &emission.radiance));
+        found.within("emission", |found| {
+            light_spectrum(found, "radiance", &emission.radiance, emission.scale);
+        });
     }
     for (key, names) in [("interior", &shape.interior), ("exterior", &shape.exterior)] {
         for name in names.as_ref().map_or(&[][..], Names::all) {
@@ -85,8 +87,10 @@ fn volume_name(found: &mut Findings, key: &str, name: &str, scene: &SceneDescrip
         || fills_scene.clone().chain(scene.volumes.iter().filter_map(|volume| volume.name.as_deref()));
     match names().filter(|other| *other == name).count() {
         1 => {}
-        0 => found.report(key, unknown_volume(name, names())),
-        _ => found.report(key, format!("several volumes are named `{name}`: give each its own name")),
+        0 => found.report(key, format!("`{key}`: {}", unknown_volume(name, names()))),
+        _ => {
+            found.report(key, format!("`{key}`: several volumes are named `{name}`: give each its own name"))
+        }
     }
 }
 
@@ -143,7 +147,10 @@ fn mesh(found: &mut Findings, mesh: &MeshShape) {
     }
     if let Some(corner) = triangles.iter().flatten().find(|corner| **corner as usize >= vertices.len()) {
         let count = vertices.len();
-        found.report("triangles", format!("there is no vertex {corner}: the {count} are numbered from 0"));
+        found.report(
+            "triangles",
+            format!("`triangles`: there is no vertex {corner}, the {count} are numbered from 0"),
+        );
     }
     for (key, length) in &inline[2..] {
         if let Some(length) = length.filter(|length| *length != vertices.len()) {

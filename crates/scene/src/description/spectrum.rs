@@ -93,6 +93,9 @@ impl SpectrumDescription {
     pub fn fraction(&self) -> Result<Spectrum, KeyProblem> {
         let spectrum = self.coefficient()?;
         match &spectrum {
+            // A single number or three: the schema says so too where every value is a fraction.
+            Spectrum::Constant(value) if *value > 1.0 => Err(("", FRACTION.into())),
+            Spectrum::Rgb(channels) if channels.max_element() > 1.0 => Err(("", FRACTION.into())),
             Spectrum::Sampled { values, .. } if values.iter().any(|value| *value > 1.0) => {
                 Err(("values", "the `values` must be numbers from 0 to 1".into()))
             }
@@ -114,6 +117,8 @@ impl SpectrumDescription {
         }
     }
 }
+
+const FRACTION: &str = "must be from 0 to 1, as fractions of light are";
 
 const FORMS: &str = "give `wavelengths` with `values`, or `blackbody`, or `power_law` with `at` and `value`";
 

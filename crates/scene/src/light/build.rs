@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use tyndall_optics::{Spectrum, cie};
 
+use super::image::BRIGHTEST;
 use super::{
     AreaLight, ConstantLight, DistantLight, ImageLight, Light, PointLight, SpotLight, SunLight, VolumeLight,
     read_light_image,
@@ -53,6 +54,15 @@ pub fn build_lights(descriptions: &[LightDescription], folder: &Path) -> Result<
                         &path,
                         format!(
                             "has {width} x {height} texels, but a picture of `mapping = \"equal_area\"` is a square"
+                        ),
+                    ));
+                }
+                let brightest = description.scale * image.greatest();
+                if brightest > f64::from(BRIGHTEST) {
+                    return Err(SceneError::file(
+                        &path,
+                        format!(
+                            "`scale` makes it as bright as {brightest:e}, and pictures hold numbers up to 4e9: give a smaller one"
                         ),
                     ));
                 }

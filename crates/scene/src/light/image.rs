@@ -13,6 +13,9 @@ use super::texel_distribution::TexelDistribution;
 use super::{LightSample, equal_area, equirectangular};
 use crate::description::{ImageFilter, ImageMapping};
 
+/// Radiance that films hold, rounded down.
+pub(super) const BRIGHTEST: f32 = 4e9;
+
 /// Texels of a picture of the surroundings, row by row from the top; finite and not negative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightImage {
@@ -24,7 +27,7 @@ pub struct LightImage {
 impl LightImage {
     /// The picture of `width` times `height` texels. None if the numbers do not fit or are 0. Values that are
     /// no radiance are mended: NaN and negative values become 0, infinite ones the greatest finite
-    /// value.
+    /// value, and what is brighter than any picture shows becomes 4e9.
     pub fn new(width: usize, height: usize, texels: Vec<[f32; 3]>) -> Option<Self> {
         if texels.is_empty() || width.checked_mul(height) != Some(texels.len()) {
             return None;
@@ -33,15 +36,15 @@ impl LightImage {
     }
 
     /// The picture with NaN and negative values made 0 and infinite ones the greatest finite value of the
-    /// picture, and how many there were.
+    /// picture, none above [`BRIGHTEST`], and how many were none of these.
     pub(crate) fn mended(width: usize, height: usize, mut texels: Vec<[f32; 3]>) -> (Self, usize) {
         let values = || texels.iter().flatten().copied();
-        let greatest = values().filter(|value| value.is_finite()).fold(0.0, f32::max);
+        let greatest = values().filter(|value| value.is_finite()).fold(0.0, f32::max).min(BRIGHTEST);
         let mut mended = 0;
         for value in texels.iter_mut().flatten() {
             let sound = match *value {
                 f32::INFINITY => greatest,
-                value if value >= 0.0 => value,
+                value if value >= 0.0 => value.min(BRIGHTEST),
                 _ => 0.0,
             };
             // Negative zero is no mistake.
@@ -49,6 +52,11 @@ impl LightImage {
             *value = sound;
         }
         (Self { width, height, texels }, mended)
+    }
+
+    /// The greatest of all values.
+    pub(crate) fn greatest(&self) -> f64 {
+        f64::from(self.texels.iter().flatten().copied().fold(0.0, f32::max))
     }
 
     /// Texels in a row.

@@ -33,7 +33,7 @@ const LARGE: u64 = 16 << 20;
 /// Reads a picture; with a warning if it had NaN, negative or infinite values, which are mended.
 pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), SceneError> {
     let refuse = |message: String| SceneError::file(path, message.replace('\n', " "));
-    let mut file = BufReader::new(files::open(path).map_err(|error| refuse(error.to_string()))?);
+    let mut file = BufReader::new(files::open(path).map_err(|error| refuse(why_not_opened(&error)))?);
     let length = file.get_ref().metadata().map_err(|error| refuse(error.to_string()))?.len();
     let mut magic = Vec::new();
     file.by_ref().take(4).read_to_end(&mut magic).map_err(|error| refuse(error.to_string()))?;
@@ -50,8 +50,8 @@ pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), Sce
     let (image, mended) = LightImage::mended(width, height, texels);
     let warning = (mended > 0).then(|| {
         format!(
-            "{}: {mended} values are NaN, negative or infinite; NaN and negative ones count as 0, infinite ones as the \
-             greatest finite value",
+            "{}: {mended} values are NaN, negative, infinite or beyond 4e9; NaN and negative ones count as 0, infinite ones as \
+             the greatest finite value, greater ones as 4e9",
             path.display()
         )
     });
@@ -139,6 +139,16 @@ pub(crate) fn read_hdr(file: BufReader<File>, length: u64) -> Result<Texels, Str
     }
     let picture = image::DynamicImage::from_decoder(decoder).map_err(damaged)?.into_rgb32f();
     Ok((width as usize, height as usize, picture.pixels().map(|pixel| pixel.0).collect()))
+}
+
+/// Why a picture that a scene names cannot be opened, and the mend.
+pub(crate) fn why_not_opened(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            "there is no such file; mend its name, which is relative to the scene file".to_owned()
+        }
+        _ => error.to_string(),
+    }
 }
 
 /// Refuses pictures that are too large.

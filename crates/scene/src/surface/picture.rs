@@ -12,7 +12,7 @@ use image::{DynamicImage, ImageDecoder};
 use tyndall_machine::files;
 
 use crate::error::SceneError;
-use crate::light::image_file::{check_size, is_far_more, read_exr, read_hdr, unlikely};
+use crate::light::image_file::{check_size, is_far_more, read_exr, read_hdr, unlikely, why_not_opened};
 
 /// Bytes that the buffers for a PNG's rows may take.
 const PNG_BUFFERS: u64 = 32 << 20;
@@ -84,7 +84,7 @@ impl Picture {
 
 fn read(path: &Path, srgb: Option<bool>) -> Result<Picture, String> {
     let io = |error: std::io::Error| error.to_string();
-    let mut file = BufReader::new(files::open(path).map_err(io)?);
+    let mut file = BufReader::new(files::open(path).map_err(|error| why_not_opened(&error))?);
     let length = file.get_ref().metadata().map_err(io)?.len();
     let mut magic = Vec::new();
     file.by_ref().take(4).read_to_end(&mut magic).map_err(io)?;

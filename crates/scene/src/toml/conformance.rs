@@ -7,22 +7,34 @@
 
 use serde_json::Value as Schema;
 
-use super::tree::{Entry, Node, Place, Value};
+use super::tree::{Entry, Node, Place, Value, counted};
+use crate::description::{Dimension, dimension};
 use crate::error::Problem;
 use crate::suggestion::{did_you_mean, list_of, nearest};
 
 /// Greatest magnitude of any number: products of a few such numbers stay finite in double precision.
 const GREATEST: f64 = 1e30;
 
+/// Greatest length in scene units: squares and volumes stay finite in single precision.
+const GREATEST_LENGTH: f64 = 1e12;
+
+/// Least length that must be above 0.
+const LEAST_LENGTH: f64 = 1e-12;
+
 /// Everything in `node`, which messages call `name`, that the schema does not allow.
 pub(crate) fn problems(node: &Node, name: &str, schema: &Schema) -> Vec<Problem> {
-    let mut check = Check { root: schema, problems: Vec::new() };
+    let mut check =
+        Check { root: schema, keys: Vec::new(), dimension: Dimension::Plain, problems: Vec::new() };
     check.value(node, name, schema);
     check.problems
 }
 
 struct Check<'s> {
     root: &'s Schema,
+    /// Those that lead to the present value.
+    keys: Vec<&'s str>,
+    /// What numbers there are measured in.
+    dimension: Dimension,
     problems: Vec<Problem>,
 }
 
@@ -97,10 +109,11 @@ impl<'s> Check<'s> {
 
     fn number(&mut self, node: &Node, name: &str, number: f64, schema: &Schema) {
         let bound = |key: &str| schema.get(key).and_then(Schema::as_f64);
-        let is_inside = bound("minimum").is_none_or(|bound| number >= bound)
-            && bound("maximum").is_none_or(|bound| number <= bound)
-            && bound("exclusiveMinimum").is_none_or(|bound| number > bound)
-            && bound("exclusiveMaximum").is_none_or(|bound| number < bound);
+        let counted = counted(number);
+        let is_inside = bound("minimum").is_none_or(|bound| counted >= bound)
+            && bound("maximum").is_none_or(|bound| counted <= bound)
+            && bound("exclusiveMinimum").is_none_or(|bound| counted > bound)
+            && bound("exclusiveMaximum").is_none_or(|bound| counted < bound);
         if !number.is_finite() {
             self.report(&node.place, format!("{name} must be finite, not {number}"));
         } else if !is_inside {
@@ -110,6 +123,23 @@ impl<'s> Check<'s> {
                 &node.place,
                 format!("{name} is {number:e}: numbers beyond 1e30 are not computed with"),
             );
+        } else if let Some(message) = self.beyond_lengths(name, number, bound("exclusiveMinimum")) {
+            self.report(&node.place, message);
+        }
+    }
+
+    /// What is wrong with a length.
+    fn beyond_lengths(&self, name: &str, number: f64, must_be_above: Option<f64>) -> Option<String> {
+        let (is_great, is_small) = (number.abs() > GREATEST_LENGTH, number < LEAST_LENGTH);
+        match self.dimension {
+            Dimension::Length if is_great => Some(format!(
+                "{name} is {number:e}: lengths beyond 1e12 scene units are not computed with; let a scene unit be longer"
+            )),
+            Dimension::Length if is_small && must_be_above.is_some() => Some(format!(
+                "{name} is {number:e}: what is shorter than 1e-12 scene units is not computed with; let a scene unit be \
+                 shorter"
+            )),
+            _ => None,
         }
     }
 
@@ -155,15 +185,25 @@ impl<'s> Check<'s> {
         }
     }
 
+    /// The value of a key of a table.
+    fn property(&mut self, node: &Node, key: &'s str, schema: &'s Schema) {
+        let outside = self.dimension;
+        self.keys.push(key);
+        self.dimension = dimension(&self.keys);
+        self.value(node, &name_of(key, schema), schema);
+        self.keys.pop();
+        self.dimension = outside;
+    }
+
     fn table(&mut self, node: &Node, name: &str, entries: &[Entry], schema: &'s Schema) {
         let Some(properties) = schema.get("properties").and_then(Schema::as_object) else { return };
         let mut has_unknown = false;
         for entry in entries {
-            match properties.get(&entry.key) {
-                Some(property) if entry.key == "type" && tag_of(schema).is_some() => {
+            match properties.get_key_value(&entry.key) {
+                Some((key, property)) if key == "type" && tag_of(schema).is_some() => {
                     debug_assert!(property.get("const").is_some());
                 }
-                Some(property) => self.value(&entry.node, &name_of(&entry.key, property), property),
+                Some((key, property)) => self.property(&entry.node, key, property),
                 None => {
                     has_unknown = true;
                     let keys = || properties.keys().map(String::as_str);

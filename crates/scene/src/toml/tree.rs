@@ -11,6 +11,12 @@ use crate::error::{Problem, SceneText};
 /// What messages call a tree as a whole.
 pub(crate) const ROOT: &str = "scene";
 
+/// The number as it counts: those nearer to 0 than 1e-30 are 0. Nothing is measured by them, and their reciprocals and
+/// squares are lost in floating point.
+pub(crate) fn counted(number: f64) -> f64 {
+    if number.abs() < 1e-30 { 0.0 } else { number }
+}
+
 /// Bytes of a text.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
@@ -151,7 +157,7 @@ impl Node {
         match &self.value {
             Value::String(text) => toml::Value::String(text.clone()),
             Value::Integer(integer) => toml::Value::Integer(*integer),
-            Value::Float(float) => toml::Value::Float(*float),
+            Value::Float(float) => toml::Value::Float(counted(*float)),
             Value::Boolean(flag) => toml::Value::Boolean(*flag),
             // The schema has no dates: the check has refused it before.
             Value::Datetime => toml::Value::String(String::new()),

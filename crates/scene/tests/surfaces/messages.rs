@@ -62,7 +62,7 @@ fn every_mistake_in_a_shape_is_named_with_its_place_and_mend() {
         ),
         (
             "mesh = { vertices = [[0, 0, 0], [1, 0, 0]], triangles = [[0, 1, 2]] }".to_owned(),
-            "10:45: there is no vertex 2: the 2 are numbered from 0",
+            "10:45: `triangles`: there is no vertex 2, the 2 are numbered from 0",
         ),
         (
             "mesh = { vertices = [[0, 0, 0], [1, 0, 0]], triangles = [[0, 1, 1]], uvs = [[0, 0]] }"
@@ -79,15 +79,15 @@ fn every_mistake_in_a_shape_is_named_with_its_place_and_mend() {
         ),
         (
             format!("{ball}\ninterior = 'milk'"),
-            "11:1: there is no volume `milk`, nor any with a name: add a [[volume]] with `name = \"milk\"`",
+            "11:1: `interior`: there is no volume `milk`, nor any with a name: add a [[volume]] with `name = \"milk\"`",
         ),
         (
             format!("{ball}\nexterior = 'medum'\n[medium]\nmu_t = 1\nalbedo = 1"),
-            "11:1: there is no volume `medum`, did you mean `medium`?",
+            "11:1: `exterior`: there is no volume `medum`, did you mean `medium`?",
         ),
         (
             format!("{ball}\ninterior = 'a'\n{0}{0}", "[[volume]]\nname = 'a'\nmu_t = 1\nalbedo = 1\n"),
-            "11:1: several volumes are named `a`: give each its own name",
+            "11:1: `interior`: several volumes are named `a`: give each its own name",
         ),
         (format!("{ball}\nid = 0"), "11:6: `id` must be an integer from 1 to 16777215, not 0"),
     ];
