@@ -54,6 +54,9 @@ pub fn run(args: Args) -> miette::Result<Done> {
     let cancel = cancel_on_signals()?;
     let options = |number| args.effort.options(number);
     let readings = read_meters(input.name(), input.description(), &built.scene, options, &cancel)?;
+    for reading in &readings {
+        reading.doubts.iter().for_each(|doubt| tell(format!("warning: {}: {doubt}", reading.name)));
+    }
     if args.json {
         answer(serde_json::to_string(&readings_report(&readings)).into_diagnostic()? + "\n")?;
     } else {

@@ -32,7 +32,8 @@ impl FileError {
     }
 
     pub(crate) fn unusable(path: &Path, what: impl Into<String>) -> Self {
-        Self::Unusable { path: path.to_owned(), what: what.into() }
+        // It may quote what the file says.
+        Self::Unusable { path: path.to_owned(), what: what.into().replace(char::is_control, " ") }
     }
 }
 

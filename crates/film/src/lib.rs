@@ -4,6 +4,7 @@
 //! sums, and the sums are developed into channels with their standard error, which go to [EXR](write_exr) and
 //! [PNG](write_png) files and into a [`Summary`].
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod accumulation_file;

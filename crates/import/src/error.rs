@@ -34,9 +34,21 @@ impl ImportError {
 
 impl Display for ImportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let message = one_line(&self.message);
         match self.line {
-            Some(line) => write!(f, "{}:{line}: {}", self.file.display(), self.message),
-            None => write!(f, "{}: {}", self.file.display(), self.message),
+            Some(line) => write!(f, "{}:{line}: {message}", self.file.display()),
+            None => write!(f, "{}: {message}", self.file.display()),
         }
     }
+}
+
+/// A message that may quote what a scene says, which may be of any length and hold line breaks.
+pub(crate) fn one_line(message: &str) -> String {
+    const LONGEST: usize = 1000;
+    let mut line: String =
+        message.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if message.chars().nth(LONGEST).is_some() {
+        line.push('…');
+    }
+    line
 }

@@ -4,6 +4,8 @@ use std::collections::HashSet;
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
+use crate::error::one_line;
+
 /// Something that a user should know about an imported scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
@@ -28,7 +30,7 @@ pub enum NoteKind {
 
 impl Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.file.display(), self.line, self.message)
+        write!(f, "{}:{}: {}", self.file.display(), self.line, one_line(&self.message))
     }
 }
 

@@ -307,7 +307,7 @@ fn build_bricks(
             ));
         }
         // The surface is where the distance is 0; a voxel's edge is the cube root of its volume.
-        let voxel = grid.index_to_world.matrix3.determinant().abs().cbrt() as f32;
+        let voxel = libm::cbrt(grid.index_to_world.matrix3.determinant().abs()) as f32;
         BrickGrid::mapped(grid, storage, |distance| (0.5 - distance / voxel).clamp(0.0, 1.0))
     } else {
         // Voxel by voxel: cut off after filtering, a single voxel drawn in place of the mixture of eight would have

@@ -33,7 +33,7 @@ impl SceneError {
     /// A problem with a file as a whole, such as an image that cannot be read.
     pub fn file(file: &Path, message: impl Into<String>) -> Self {
         Self::from(Problem {
-            file: file.display().to_string(),
+            file: one_line(file.display().to_string()),
             position: None,
             message: one_line(message),
             source: None,
@@ -59,7 +59,7 @@ impl Problem {
         let line = before.matches('\n').count() + 1;
         let column = before[line_start..].chars().count() + 1;
         Self {
-            file: text.name().to_owned(),
+            file: one_line(text.name()),
             position: Some((line, column)),
             message: one_line(message),
             source: Some((Arc::clone(text), span)),
@@ -68,13 +68,19 @@ impl Problem {
 
     /// A problem with a `--set` option, shown without a position: the option is one line.
     pub(crate) fn option(option: &str, message: impl Into<String>) -> Self {
-        Self { file: option.to_owned(), position: None, message: one_line(message), source: None }
+        Self { file: one_line(option), position: None, message: one_line(message), source: None }
     }
 }
 
-/// Messages quote what the file says, which may hold line breaks as escapes.
+/// Messages quote what the file says, which may hold line breaks as escapes and be of any length.
 fn one_line(message: impl Into<String>) -> String {
-    message.into().replace(char::is_control, " ")
+    const LONGEST: usize = 1000;
+    let mut line = message.into().replace(char::is_control, " ");
+    if let Some((end, _)) = line.char_indices().nth(LONGEST) {
+        line.truncate(end);
+        line.push('…');
+    }
+    line
 }
 
 impl From<Problem> for SceneError {

@@ -37,8 +37,8 @@ impl Fault {
         let path = path.to_path_buf();
         match self {
             Self::Io(error) => ReadError::Io { path, error },
-            Self::Damaged(what) => ReadError::Damaged { path, what },
-            Self::Unsupported(what) => ReadError::Unsupported { path, what },
+            Self::Damaged(what) => ReadError::Damaged { path, what: one_line(&what) },
+            Self::Unsupported(what) => ReadError::Unsupported { path, what: one_line(&what) },
         }
     }
 }
@@ -47,6 +47,16 @@ impl From<MemoryError> for Fault {
     fn from(error: MemoryError) -> Self {
         Self::Io(error.into())
     }
+}
+
+/// A text as part of a message: names in a damaged file may be of any length and hold line breaks.
+pub(crate) fn one_line(text: &str) -> String {
+    const LONGEST: usize = 500;
+    let mut line: String = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        line.push('…');
+    }
+    line
 }
 
 /// An early end and undecodable compressed data are damage, not failures of the system.

@@ -10,7 +10,7 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 use tyndall_machine::files;
 
-use crate::fault::Fault;
+use crate::fault::{Fault, one_line};
 use crate::raw::RawShape;
 use crate::{Grid, GridSelection, ReadError, nifti, npy, nvdb, raw, vdb, vol};
 
@@ -283,7 +283,7 @@ impl Found {
             {
                 let available = match names.is_empty() {
                     true => vec!["none".to_owned()],
-                    false => names.iter().map(|(name, _)| format!("`{name}`")).collect(),
+                    false => names.iter().map(|(name, _)| format!("`{}`", one_line(name))).collect(),
                 };
                 return Err(ReadError::NoSuchGrid {
                     path: path.to_path_buf(),

@@ -1,7 +1,11 @@
 //! Any EXR file as red, green, blue and, if it has them, their standard errors.
 
+use std::fs::File;
+use std::io::BufReader;
+use std::panic::catch_unwind;
 use std::path::Path;
 
+use exr::block::reader::ChunksReader;
 use exr::prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers, Text};
 
 use tyndall_machine::{files, memory};
@@ -21,14 +25,28 @@ pub struct Picture {
     pub standard_error: Option<Vec<[f32; 3]>>,
 }
 
-/// No lossless compression of EXR shrinks pixels by more than deflate's 1032 (PXR24 drops a quarter before it).
-const GREATEST_RATIO: u64 = 1400;
+/// Pictures up to this many bytes of memory are believed as they are.
+const LARGE: u64 = 16 << 20;
+
+/// Bytes that a block may unpack to for each byte of the file, beside [`LARGE`]. Blocks are unpacked whole.
+const BLOCK_RATIO: u64 = 64;
 
 impl Picture {
     /// Reads an EXR file: the channels R, G, B, or those of the layer that looks like the picture
     /// (`ViewLayer.Combined.R`…), or the luminance Y as grey. Half, float and unsigned channels are read; of several
     /// resolutions only the finest is.
+    ///
+    /// It is decoded on this thread alone: where the library that does so trips over damage, it must not take the program
+    /// along.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged, or holds no such channels.
     pub fn read(path: &Path) -> Result<Self, FileError> {
+        catch_unwind(|| Self::decode(path))
+            .unwrap_or_else(|_| Err(FileError::unusable(path, "cannot be read as OpenEXR: it is damaged")))
+    }
+
+    fn decode(path: &Path) -> Result<Self, FileError> {
         let refuse = |what: String| FileError::unusable(path, what);
         let damaged = |error: exr::error::Error| match error {
             exr::error::Error::Io(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
@@ -40,7 +58,8 @@ impl Picture {
             files::open(path).and_then(|file| file.metadata()).map_err(|e| FileError::io(path, e))?.len();
         let meta = MetaData::read_from_file(path, false).map_err(damaged)?;
         let promised: u64 = meta.headers.iter().map(|h| pixel_bytes(h.layer_size, &h.channels)).sum();
-        if promised > length.saturating_mul(GREATEST_RATIO) {
+        let block = meta.headers.iter().map(|header| header.max_block_byte_size() as u64).max().unwrap_or(0);
+        if block > LARGE + length.saturating_mul(BLOCK_RATIO) {
             return Err(refuse(format!(
                 "promises {promised} bytes of pixels, more than its {length} can hold"
             )));
@@ -48,12 +67,16 @@ impl Picture {
         // As stored, as numbers, and as colours with their errors.
         memory::ask(promised.saturating_mul(3), || format!("3 x {promised} bytes of pixels"))
             .map_err(|error| FileError::io(path, error.into()))?;
+        if promised > LARGE + 2 * length {
+            unpack_once(path).map_err(damaged)?;
+        }
         let image = exr::prelude::read()
             .no_deep_data()
             .largest_resolution_level()
             .all_channels()
             .all_layers()
             .all_attributes()
+            .non_parallel()
             .from_file(path)
             .map_err(damaged)?;
         let mut channels = Channels::default();
@@ -77,6 +100,18 @@ impl Picture {
         let sum = |c: usize| self.rgb.iter().map(|rgb| f64::from(rgb[c])).sum::<f64>();
         [0, 1, 2].map(|c| sum(c) / self.rgb.len() as f64)
     }
+}
+
+/// Unpacks all blocks one by one and drops them: whether they are there is known then, before memory is taken for the
+/// whole.
+fn unpack_once(path: &Path) -> exr::error::UnitResult {
+    let file = BufReader::new(File::open(path)?);
+    let chunks = exr::block::read(file, false)?.all_chunks(false)?;
+    let mut blocks = chunks.sequential_decompressor(false);
+    while let Some(block) = blocks.decompress_next_block() {
+        block?;
+    }
+    Ok(())
 }
 
 fn pixel_bytes(size: exr::prelude::Vec2<usize>, channels: &exr::meta::attribute::ChannelList) -> u64 {

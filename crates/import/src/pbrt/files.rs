@@ -4,7 +4,6 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use flate2::read::MultiGzDecoder;
 use tyndall_machine::{files, memory};
 
 use super::context::Context;
@@ -15,6 +14,7 @@ use super::tokens::Tokens;
 use super::world::World;
 use crate::ImportError;
 use crate::include_chain::include_chain;
+use crate::packed::unpacked;
 
 /// Files within files.
 const DEEPEST: usize = 64;
@@ -98,7 +98,7 @@ impl Files<'_> {
         (&mut file).take(left).read_to_end(&mut bytes)?;
         if bytes.starts_with(&[0x1f, 0x8b]) {
             let packed = std::mem::take(&mut bytes);
-            MultiGzDecoder::new(packed.as_slice()).take(left).read_to_end(&mut bytes)?;
+            unpacked(packed.as_slice(), packed.len() as u64).take(left).read_to_end(&mut bytes)?;
         }
         Ok(bytes)
     }

@@ -6,7 +6,6 @@
 
 use std::f64::consts::PI;
 
-use flate2::read::MultiGzDecoder;
 use glam::DVec3;
 use tyndall_machine::files;
 use tyndall_scene::description::{
@@ -16,6 +15,7 @@ use tyndall_scene::description::{
 use super::context::{Context, text_of};
 use super::transforms;
 use super::world::Shape;
+use crate::packed::unpacked;
 use crate::{ImportError, Mesh, affine};
 
 /// Meshes of more vertices are put into files.
@@ -166,9 +166,10 @@ fn ply(shape: &Shape, context: &Context) -> Result<Geometry, ImportError> {
     let mut file = context.file(name, place)?;
     if file.ends_with(".gz") {
         let unreadable = |error: std::io::Error| place.error(format!("{file} cannot be read: {error}"));
-        let mut unpacked = MultiGzDecoder::new(files::open(file.as_ref()).map_err(unreadable)?);
+        let packed = files::open(file.as_ref()).map_err(unreadable)?;
+        let length = packed.metadata().map_err(unreadable)?.len();
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".ply.gz");
-        let path = context.sidecar.write_copy(stem, "ply", &mut unpacked)?;
+        let path = context.sidecar.write_copy(stem, "ply", &mut unpacked(packed, length))?;
         file = text_of(&path, place)?;
     }
     let mesh = MeshShape { file: Some(file), ..MeshShape::default() };

@@ -4,6 +4,7 @@
 //! it, whatever else is a spectrum is brought to luminance 1 first, and then `scale` holds. Between its samples a
 //! spectrum is linear, and 0 beyond them.
 
+use std::io::Read;
 use std::sync::Arc;
 
 use tyndall_machine::files;
@@ -174,13 +175,22 @@ fn samples(parameter: &Parameter, context: &Context) -> Result<Samples, ImportEr
     Ok((wavelengths, values))
 }
 
+/// A larger file is no spectrum.
+const GREATEST_FILE: u64 = 16 << 20;
+
 /// Numbers in a text file, with comments after `#`.
 fn read_file(name: &str, parameter: &Parameter, context: &Context) -> Result<Vec<f64>, ImportError> {
     let path = context.path(name);
-    let bytes = files::read(&path).map_err(|error| {
-        let message = format!("\"{name}\" is no spectrum known by name, and {}: {error}", path.display());
-        parameter.error(&message)
-    })?;
+    let mut bytes = Vec::new();
+    files::open(&path).and_then(|file| file.take(GREATEST_FILE + 1).read_to_end(&mut bytes)).map_err(
+        |error| {
+            let message = format!("\"{name}\" is no spectrum known by name, and {}: {error}", path.display());
+            parameter.error(&message)
+        },
+    )?;
+    if bytes.len() as u64 > GREATEST_FILE {
+        return Err(parameter.error(&format!("{} is too large for a spectrum", path.display())));
+    }
     let mut tokens = Tokens::new(&bytes, Arc::from(path.as_path()));
     let mut numbers = Vec::new();
     loop {

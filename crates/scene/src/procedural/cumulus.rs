@@ -91,9 +91,9 @@ fn heap_of_spheres(seed: u32) -> Vec<Sphere> {
         let radius = (0.17 - 0.085 * reach) * (0.8 + 0.4 * random.f32());
         let height = 0.22 * (1.0 - reach * reach) * (0.6 + 0.8 * random.f32());
         let centre = Vec3::new(
-            0.5 + 0.29 * reach * angle.cos(),
+            0.5 + 0.29 * reach * libm::cosf(angle),
             BASE + 0.06 + height,
-            0.5 + 0.22 * reach * angle.sin(),
+            0.5 + 0.22 * reach * libm::sinf(angle),
         );
         spheres.push(Sphere { centre: centre + jitter * 0.05, radius });
     }
@@ -115,7 +115,7 @@ fn heap_of_spheres(seed: u32) -> Vec<Sphere> {
 
 /// A random direction, more often up than down: bubbles rise.
 fn upward_direction(random: &mut Random) -> Vec3 {
-    let y = 1.0 - 1.6 * random.f32().powf(1.3);
+    let y = 1.0 - 1.6 * libm::powf(random.f32(), 1.3);
     let (sin, cos) = tyndall_lanes::sin_cos_turns(random.f32());
     let across = (1.0 - y * y).max(0.0).sqrt();
     Vec3::new(across * cos, y, across * sin)

@@ -3,15 +3,22 @@
 //! What a file is shows in its first bytes, not in its name. Numbers of PNG and JPEG are sRGB-coded (IEC 61966-2-1) unless the
 //! scene says otherwise, those of the others linear. Bytes stay bytes in memory and are decoded when looked at.
 
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 use glam::DVec3;
+use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder};
 use tyndall_machine::files;
 
 use crate::error::SceneError;
-use crate::light::image_file::{check_size, read_exr, read_hdr};
+use crate::light::image_file::{check_size, is_far_more, read_exr, read_hdr, unlikely};
+
+/// Bytes that the buffers for a PNG's rows may take.
+const PNG_BUFFERS: u64 = 32 << 20;
+
+/// Texels that a byte of a JPEG may stand for, beside a million: one colour all over takes about two bits for 64 texels.
+const JPEG_TEXELS_A_BYTE: u64 = 256;
 
 /// A picture, row by row from the top.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,12 +93,28 @@ fn read(path: &Path, srgb: Option<bool>) -> Result<Picture, String> {
         [0x76, 0x2f, 0x31, 0x01] => of_numbers(read_exr(file, length)?, srgb.unwrap_or(false)),
         [b'#', b'?', ..] => of_numbers(read_hdr(file, length)?, srgb.unwrap_or(false)),
         [0x89, b'P', b'N', b'G'] => {
-            let decoder = image::codecs::png::PngDecoder::new(file);
-            of_bytes(decoder.map_err(|error| format!("damaged PNG picture: {error}"))?, length, srgb)?
+            let damaged = |error: &dyn std::fmt::Display| format!("damaged PNG picture: {error}");
+            let decoder = png_decoder(&mut file).map_err(|error| damaged(&error))?;
+            let bytes = decoder.total_bytes();
+            if is_far_more(bytes, length) {
+                drop(decoder);
+                file.rewind().map_err(io)?;
+                unpack_once(&mut file).map_err(|error| damaged(&error))?;
+            }
+            file.rewind().map_err(io)?;
+            let decoder = png_decoder(file).map_err(|error| damaged(&error))?;
+            of_bytes(decoder, srgb)?
         }
         [0xff, 0xd8, ..] => {
             let decoder = image::codecs::jpeg::JpegDecoder::new(file);
-            of_bytes(decoder.map_err(|error| format!("damaged JPEG picture: {error}"))?, length, srgb)?
+            let decoder = decoder.map_err(|error| format!("damaged JPEG picture: {error}"))?;
+            let (width, height) = decoder.dimensions();
+            // How much is there shows only when it is decoded, and decoders fill up what is missing.
+            let most = (1 << 20) + length.saturating_mul(JPEG_TEXELS_A_BYTE);
+            if u64::from(width) * u64::from(height) > most {
+                return Err(unlikely(width.into(), height.into(), length));
+            }
+            of_bytes(decoder, srgb)?
         }
         _ => {
             let kinds = "PNG (.png), a JPEG (.jpg), an OpenEXR (.exr) nor a Radiance (.hdr)";
@@ -115,9 +138,24 @@ fn of_numbers((width, height, mut texels): (usize, usize, Vec<[f32; 3]>), srgb: 
     Picture::linear(width, height, texels)
 }
 
-fn of_bytes(decoder: impl ImageDecoder, length: u64, srgb: Option<bool>) -> Result<Picture, String> {
+fn png_decoder<R: BufRead + Seek>(file: R) -> image::ImageResult<PngDecoder<R>> {
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(PNG_BUFFERS);
+    PngDecoder::with_limits(file, limits)
+}
+
+/// Unpacks the rows of a PNG one by one and drops them: whether they are there is known then, before memory is taken for
+/// the whole.
+fn unpack_once(file: impl BufRead + Seek) -> Result<(), png::DecodingError> {
+    let limits = png::Limits { bytes: PNG_BUFFERS as usize };
+    let mut rows = png::Decoder::new_with_limits(file, limits).read_info()?;
+    while rows.next_row()?.is_some() {}
+    Ok(())
+}
+
+fn of_bytes(decoder: impl ImageDecoder, srgb: Option<bool>) -> Result<Picture, String> {
     let (width, height) = decoder.dimensions();
-    check_size(width.into(), height.into(), length)?;
+    check_size(width.into(), height.into())?;
     let is_deep = decoder.color_type().bytes_per_pixel() > decoder.color_type().channel_count();
     let picture = DynamicImage::from_decoder(decoder).map_err(|error| format!("damaged picture: {error}"))?;
     let (width, height, srgb) = (width as usize, height as usize, srgb.unwrap_or(true));
@@ -138,5 +176,5 @@ fn sound(value: f32) -> f32 {
 }
 
 fn srgb_to_linear(value: f32) -> f32 {
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    if value <= 0.04045 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
 }

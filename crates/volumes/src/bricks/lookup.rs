@@ -84,7 +84,9 @@ impl BrickGrid {
         let base = p.floor();
         let f = p - base;
         let i = base.as_ivec3();
-        let v = |x, y, z| f64::from(self.voxel([i.x + x, i.y + y, i.z + z]));
+        // Far off, where indices end, there is the background.
+        let next = |index: i32, step| index.saturating_add(step);
+        let v = |x, y, z| f64::from(self.voxel([next(i.x, x), next(i.y, y), next(i.z, z)]));
         let mix = |a: f64, b: f64, w: f64| a + (b - a) * w;
         let face = |x| mix(mix(v(x, 0, 0), v(x, 0, 1), f.z), mix(v(x, 1, 0), v(x, 1, 1), f.z), f.y);
         mix(face(0), face(1), f.x)

@@ -175,7 +175,7 @@ fn largest_magnitude(bounds: Bounds) -> f32 {
 /// power of two that brings the largest magnitude into [2^14, 2^15).
 fn half_factor(bounds: Bounds) -> f32 {
     let largest = largest_magnitude(bounds);
-    let exponent = if largest > 0.0 && largest.is_finite() { largest.log2().floor() as i32 } else { 0 };
+    let exponent = if largest > 0.0 && largest.is_finite() { libm::log2f(largest).floor() as i32 } else { 0 };
     // Between 2^-3 and 2^15 halves resolve the range to 2^-21 of its largest value without help.
     let scale = if (-3..15).contains(&exponent) { 0 } else { exponent - 14 };
     2.0_f32.powi(112 + scale)

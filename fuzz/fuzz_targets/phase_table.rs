@@ -1,0 +1,5 @@
+//! Files for the reader `phase_table` of `tyndall_fuzz::TARGETS`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| tyndall_fuzz::fuzz("phase_table", bytes));
