@@ -57,6 +57,21 @@ fn files_that_include_themselves_are_refused() {
     let folder = Folder::with(&[("scene.xml", scene.as_bytes())]);
     let error = folder.import_with(&[]).unwrap_err();
     assert_eq!(error.line, Some(2));
+    assert!(error.message.contains("scene.xml -> scene.xml: the file includes itself"), "{error}");
+}
+
+#[test]
+fn files_within_files_end_somewhere() {
+    let scene = |number: usize| {
+        format!("<scene version=\"3.0.0\"><include filename=\"{}.xml\"/></scene>", number + 1)
+    };
+    let files: Vec<(String, String)> = (1..20)
+        .map(|number| (format!("{number}.xml"), scene(number)))
+        .chain([("scene.xml".into(), scene(0))])
+        .collect();
+    let files: Vec<(&str, &[u8])> =
+        files.iter().map(|(name, text)| (name.as_str(), text.as_bytes())).collect();
+    let error = Folder::with(&files).import_with(&[]).unwrap_err();
     assert!(error.message.contains("more than 15 deep"), "{error}");
 }
 
