@@ -29,8 +29,14 @@ fn rejected_samples<'a>(films: impl IntoIterator<Item = &'a Film>) -> Option<Str
     })
 }
 
+/// Of fewer samples a pixel each is much of it, and nothing is said.
+const LEAST_SAMPLES: f64 = 16.0;
+
 /// What single samples make of a film, if that is more than its errors tell; and how much it is.
 fn heavy_tail(film: &Film) -> Option<(f64, String)> {
+    if film.mean_sample_count() < LEAST_SAMPLES {
+        return None;
+    }
     let stated = film.median_relative_error().filter(|error| error.is_finite())?;
     let unseen = film.stated_unseen_light()?;
     if unseen.bound > stated.max(LEAST_STATED_ERROR) {
@@ -111,8 +117,9 @@ mod tests {
     #[test]
     fn a_sample_that_makes_much_of_the_picture_is_told_where_pixels_are_noisy_anyway() {
         let noise = [0.0, 10.0, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0];
-        let lines = warnings([&film_with(40.0, 8, &noise)]);
+        let lines = warnings([&film_with(40.0, 8, &noise.repeat(2))]);
         assert!(lines.len() == 1 && lines[0].contains("one sample makes"), "{lines:?}");
+        assert_eq!(warnings([&film_with(40.0, 8, &noise)]), Vec::<String>::new(), "too few to tell");
     }
 
     #[test]
