@@ -63,11 +63,11 @@ fn colours(most: f64) -> impl Strategy<Value = SpectrumDescription> {
 }
 
 fn light_colours() -> impl Strategy<Value = SpectrumDescription> {
-    let body = (within(200.0, 1e6), of(positive())).prop_map(|(kelvin, luminance)| {
+    let body = (within(1e3, 1e6), of(within(1e-9, 1e6))).prop_map(|(kelvin, luminance)| {
         let table = SpectrumTable { blackbody: Some(kelvin), luminance, ..Default::default() };
         SpectrumDescription::Table(table)
     });
-    let power = (within(-20.0, 20.0), within(100.0, 1e3)).prop_map(|(power_law, at)| {
+    let power = (within(-4.0, 4.0), within(100.0, 1e3)).prop_map(|(power_law, at)| {
         let (power_law, at, value) = (Some(power_law), Some(at), Some(1.0));
         SpectrumDescription::Table(SpectrumTable { power_law, at, value, ..Default::default() })
     });
