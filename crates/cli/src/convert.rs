@@ -5,7 +5,7 @@ mod scene;
 use std::path::{Path, PathBuf};
 
 use miette::{bail, miette};
-use tyndall_session::{check_writable, is_foreign, read_volume};
+use tyndall_session::{check_not_same, check_writable, is_foreign, read_volume};
 use tyndall_volumes::{Codec, Format, WriteOptions};
 
 use crate::input_args::{ImportArgs, RawArgs};
@@ -84,6 +84,7 @@ pub fn run(args: Args) -> miette::Result<()> {
         None => Codec::default(),
     };
     check_writable([args.output.as_path()])?;
+    check_not_same(&args.output, &args.input)?;
     let file = read_volume(&args.input, &args.grid, args.raw.volume())?;
     for (name, why) in &file.skipped {
         tell(format!("note: grid `{name}` is left out: {why}"));

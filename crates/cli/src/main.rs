@@ -17,6 +17,7 @@ mod slab;
 mod terminal;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use miette::IntoDiagnostic;
 use std::process::ExitCode;
 
 /// Light in clouds, smoke, fire, fog, milk and air: unbiased pictures of volumes, with their error
@@ -34,6 +35,10 @@ Examples:
   tyndall estimators smoke.toml -o report.html           all distance samplers and transmittance estimators compared"
 )]
 struct Cli {
+    /// Take no more memory than this, such as 4GB or 512MiB [default: TYNDALL_MAX_MEMORY, or what the machine or the
+    /// control group of the job has]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = tyndall_machine::parse_size)]
+    max_memory: Option<u64>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -62,19 +67,52 @@ enum Command {
 enum Done {
     /// All that was asked for.
     All,
-    /// Ctrl-C; what there was is saved.
+    /// A signal such as that of Ctrl-C; what there was is saved.
     Interrupted,
 }
 
 fn main() -> ExitCode {
-    match run(Cli::parse().command) {
+    save_address_space();
+    let Cli { max_memory, command } = Cli::parse();
+    match prepare(max_memory).and_then(|()| run(command)) {
         Ok(Done::All) => ExitCode::SUCCESS,
-        Ok(Done::Interrupted) => ExitCode::from(130),
+        Ok(Done::Interrupted) => ExitCode::from(interrupt::exit_code()),
         Err(report) => {
             terminal::tell_error(&report);
             ExitCode::from(1)
         }
     }
+}
+
+/// Starts the program anew without arenas for each thread, if `ulimit -v` limits address space: of that, glibc reserves 64 MiB
+/// for each, whatever they use, and listens to this variable only when it starts (`mallopt(3)`).
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn save_address_space() {
+    use std::os::unix::process::CommandExt;
+    const VARIABLE: &str = "MALLOC_ARENA_MAX";
+    if !tyndall_machine::memory::address_space_is_limited() || std::env::var_os(VARIABLE).is_some() {
+        return;
+    }
+    let mut arguments = std::env::args_os();
+    let (Ok(program), Some(name)) = (std::env::current_exe(), arguments.next()) else { return };
+    // If it returns, it has failed, and all is as it was.
+    let _ = std::process::Command::new(program).arg0(name).args(arguments).env(VARIABLE, "1").exec();
+}
+
+/// Elsewhere nothing is known of such a waste.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+fn save_address_space() {}
+
+/// What holds for every command: limits of the machine, which are to end in messages.
+fn prepare(max_memory: Option<u64>) -> miette::Result<()> {
+    tyndall_machine::memory::set_limit(max_memory).into_diagnostic()?;
+    interrupt::survive_file_size_limit()?;
+    // Helpers for tables and volumes: where the system gives no threads for them, this one does their work.
+    if rayon::ThreadPoolBuilder::new().build_global().is_err() {
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+        alone.build_global().into_diagnostic()?;
+    }
+    Ok(())
 }
 
 fn run(command: Option<Command>) -> miette::Result<Done> {

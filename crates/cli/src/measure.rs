@@ -11,7 +11,7 @@ use tyndall_session::{read_meters, readings_report};
 use crate::Done;
 use crate::effort::Effort;
 use crate::input_args::{ImportArgs, RawArgs, open};
-use crate::interrupt::cancel_on_interrupt;
+use crate::interrupt::cancel_on_signals;
 use crate::terminal::{answer, tell};
 
 /// Measure fluxes and radiances in a scene: the values of its `[[meter]]` tables, with their standard errors
@@ -51,9 +51,12 @@ pub fn run(args: Args) -> miette::Result<Done> {
     let input = open(Some(&args.input), &args.set, &RawArgs::default(), &args.import)?;
     let built = input.build()?;
     input.notes().iter().chain(&built.notes).for_each(|note| tell(format!("note: {note}")));
-    let cancel = cancel_on_interrupt()?;
+    let cancel = cancel_on_signals()?;
     let options = |number| args.effort.options(number);
     let readings = read_meters(input.name(), input.description(), &built.scene, options, &cancel)?;
+    for reading in &readings {
+        reading.doubts.iter().for_each(|doubt| tell(format!("warning: {}: {doubt}", reading.name)));
+    }
     if args.json {
         answer(serde_json::to_string(&readings_report(&readings)).into_diagnostic()? + "\n")?;
     } else {

@@ -15,15 +15,15 @@ use miette::miette;
 use tyndall_film::Colours;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::observers;
-use tyndall_session::{Frames, Input, Job, JobOptions, Output, check_writable, colours};
+use tyndall_session::{Frames, Input, Job, JobOptions, Output, check_no_input, check_writable, colours};
 use tyndall_transport::Control;
 
 use crate::Done;
 use crate::input_args::{ImportArgs, RawArgs, open, open_frames};
-use crate::interrupt::stop_on_interrupt;
+use crate::interrupt::stop_on_signals;
 use crate::terminal::{answer, tell};
 use estimators::EstimatorArgs;
-use picture::Target;
+use picture::{Target, open_checkpoint};
 use progress::ProgressStyle;
 use stop::{GoalArgs, parse_time};
 
@@ -159,18 +159,19 @@ pub fn run(args: Args) -> miette::Result<Done> {
         return animation::run(&args, input, frames);
     }
     let outputs = outputs(&args, &input)?;
-    check_writable(outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()))?;
+    let files = || outputs.iter().map(Output::path).chain(args.checkpoint.as_deref());
+    check_writable(files())?;
+    check_no_input(files(), &input)?;
+    let checkpoint = open_checkpoint(args.checkpoint.as_deref(), args.checkpoint_every, args.resume)?;
     let job = Job::new(&input, &job_options(&args))?;
     job.notes().iter().for_each(|note| tell(format!("note: {note}")));
     args.estimators.tell_integrator(args.integrator);
     let control = Arc::new(Control::default());
-    stop_on_interrupt(&control)?;
+    stop_on_signals(&control.cancel)?;
     let target = Target {
         outputs,
         exposure: args.exposure.unwrap_or(description.film.exposure) as f32,
-        checkpoint: args.checkpoint,
-        checkpoint_every: args.checkpoint_every,
-        resume: args.resume,
+        checkpoint,
         progress: args.progress,
         frame: None,
     };

@@ -11,7 +11,7 @@ use tyndall_transport::walk::{Incidence, LayerFluxes, Slab, slab_input};
 
 use crate::Done;
 use crate::effort::Effort;
-use crate::interrupt::cancel_on_interrupt;
+use crate::interrupt::cancel_on_signals;
 use crate::measured::{Value, with_error};
 use crate::phase;
 use crate::terminal::answer;
@@ -85,7 +85,7 @@ pub fn run(args: Args) -> miette::Result<Done> {
         ground_albedo: args.ground_albedo,
         views: slab_input::views(&args.radiance, args.azimuth, args.tau.is_finite()),
     };
-    let cancel = cancel_on_interrupt()?;
+    let cancel = cancel_on_signals()?;
     let start = Instant::now();
     let fluxes = slab.measure(&args.effort.options(0), &cancel);
     if fluxes.samples == 0 {

@@ -158,6 +158,58 @@ fn samples_too_bright_for_the_film_are_left_out_and_told() {
     same_film(&folder, "whole.acc", "merged.acc");
 }
 
+/// A floor under light 1 and a bright lamp. Glass about the lamp bends no light, but no ray can be aimed at it: only one
+/// path in 170 finds it by chance.
+const LAMP_IN_GLASS: &str = r#"
+    camera = { position = [0, 6, 0], target = [0, 0, 0], up = [0, 0, 1], vertical_fov = 40 }
+    film = { resolution = [32, 18] }
+    light = [{ type = "constant", radiance = 1 }]
+    [[shape]]
+    rectangle = { corner = [-9, 0, -9], u = [0, 0, 18], v = [18, 0, 0] }
+    material = { type = "diffuse", reflectance = 0.5 }
+    [[shape]]
+    sphere = { center = [0, 9, 0], radius = 0.7 }
+    material = { type = "diffuse", reflectance = 0 }
+    emission = { radiance = 50 }
+    [[shape]]
+    sphere = { center = [0, 9, 0], radius = 1.2 }
+    material = { type = "dielectric", index = 1.0001 }
+"#;
+
+/// Median over the pixels of the true relative error: a sphere of radius r and radiance L at distance d gives the irradiance
+/// π L (r/d)² cos θ, and hides as much of the light behind it.
+fn true_error_of_lamp_in_glass(film: &tyndall_film::Film) -> f64 {
+    let size = 6.0 * 20f64.to_radians().tan() / 9.0;
+    let mut errors: Vec<f64> = (0..32 * 18)
+        .map(|pixel| {
+            let [x, y] = [f64::from(pixel % 32) - 15.5, f64::from(pixel / 32) - 8.5].map(|i| i * size);
+            let distance = (81.0 + x * x + y * y).sqrt();
+            let truth = 0.5 * (1.0 + 49.0 * (0.7 / distance).powi(2) * 9.0 / distance);
+            (film.mean(pixel % 32, pixel / 32)[0] / truth - 1.0).abs()
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    errors[errors.len() / 2]
+}
+
+#[test]
+fn an_error_is_not_reached_while_most_pixels_have_not_seen_a_rare_path() {
+    let folder = Folder::new();
+    folder.write("lamp.toml", LAMP_IN_GLASS);
+    let run = folder.done("render lamp.toml --spp 16 -o early.acc -o early.json");
+    let film = folder.accumulation("early.acc").film;
+    assert!(film.median_relative_error().unwrap() < 0.01 && true_error_of_lamp_in_glass(&film) > 0.2);
+    assert!(run.err.contains("owe more than 1.0 % of their light to one sample"), "{}", run.err);
+    let summary: Value = serde_json::from_slice(&folder.read("early.json")).unwrap();
+    assert!(summary["unseen_light"]["bound"].as_f64().unwrap() > 0.1, "{summary}");
+
+    let run = folder.done("render lamp.toml --error 15% --spp 10000 -o late.acc");
+    let film = folder.accumulation("late.acc").film;
+    let (spp, error) = (film.complete().count(), true_error_of_lamp_in_glass(&film));
+    assert!((64..2000).contains(&spp) && error < 0.15, "{spp} {error}");
+    assert!(!run.err.contains("warning"), "{}", run.err);
+}
+
 #[test]
 fn progress_in_json_is_an_object_a_line() {
     let folder = Folder::new();
@@ -265,8 +317,11 @@ fn a_checkpoint_of_another_scene_is_refused() {
 
 #[cfg(unix)]
 #[test]
-fn a_termination_request_saves_as_well() {
+fn a_termination_request_and_a_closed_terminal_save_as_well() {
     let folder = Folder::new();
-    assert_eq!(interrupt(&folder, "-o part.acc", 2, "-TERM"), Some(130));
-    assert!(folder.accumulation("part.acc").film.mean_sample_count() > 0.0);
+    for (name, code) in [("-TERM", 143), ("-HUP", 129)] {
+        assert_eq!(interrupt(&folder, "-o part.acc", 2, name), Some(code));
+        assert!(folder.accumulation("part.acc").film.mean_sample_count() > 0.0);
+        std::fs::remove_file(folder.path("part.acc")).unwrap();
+    }
 }

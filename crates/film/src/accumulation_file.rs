@@ -23,9 +23,9 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use tyndall_machine::{files, memory};
 
-use crate::atomic_write::write_atomically;
-use crate::error::FileError;
+use crate::error::{FileError, write_atomically};
 use crate::film::{Film, OpenPass, pixel_count, tile_count};
 use crate::fixed_point::MAX_SAMPLES;
 use crate::metadata::ImageMetadata;
@@ -90,7 +90,7 @@ impl Accumulation {
 
     /// Reads an `.acc` file.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = std::fs::read(path).map_err(|e| FileError::io(path, e))?;
+        let bytes = files::read(path).map_err(|e| FileError::io(path, e))?;
         Self::decode(&bytes).map_err(|what| FileError::unusable(path, what))
     }
 
@@ -221,7 +221,7 @@ fn check_version(version: u32) -> Result<(), String> {
 pub(crate) fn read_provenance(path: &Path) -> Result<Provenance, FileError> {
     let refuse = |what: String| FileError::unusable(path, what);
     let io = |error| FileError::io(path, error);
-    let file = std::fs::File::open(path).map_err(io)?;
+    let file = files::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();
     let mut file = ChecksumReader { inner: io::BufReader::new(file), crc: flate2::Crc::new() };
     let mut start = [0; 16];
@@ -266,6 +266,10 @@ impl Header {
     /// The film, its sums read from `blocks`.
     fn film(&self, blocks: &mut &[u8]) -> Result<Film, String> {
         let count = pixel_count(self.width, self.height).map_err(|e| format!("has a bad header: {e}"))?;
+        memory::ask(Sums::bytes(count, self.layers) as u64, || {
+            format!("the sums of {}x{} pixels", self.width, self.height)
+        })
+        .map_err(|error| error.to_string())?;
         let mut sums = Sums::default();
         for plane in &self.planes {
             match plane {

@@ -1,6 +1,9 @@
 //! What can be wrong with a file of pictures or sums.
 
+use std::io;
 use std::path::{Path, PathBuf};
+
+use tyndall_machine::Unfinished;
 
 /// Why a file cannot be read or written, as one line a user can act on.
 #[derive(Debug, thiserror::Error)]
@@ -32,4 +35,15 @@ impl FileError {
         // It may quote what the file says.
         Self::Unusable { path: path.to_owned(), what: what.into().replace(char::is_control, " ") }
     }
+}
+
+/// Writes a file through `fill`, replacing what was there in one step.
+///
+/// # Errors
+/// If it cannot be written; what was there is then as before.
+pub fn write_atomically(
+    path: &Path,
+    fill: impl FnOnce(&mut Unfinished<'_>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    tyndall_machine::write_atomically(path, fill).map_err(|error| FileError::io(path, error))
 }

@@ -7,7 +7,9 @@
 //! n counts the samples that are in the sums: not those that were rejected (see [`Film`]).
 //!
 //! Samples of a pixel are independent, so the standard error is that of the mean; for a few dozen samples and more
-//! an interval of ±1.96 of it covers the truth about 95 % of the time (central limit theorem).
+//! an interval of ±1.96 of it covers the truth about 95 % of the time (central limit theorem). Of few it covers less, by
+//! Student's t of normally distributed samples 93 % of 16, the fewest that `--error` believes, and 86 % of 4. What a pixel
+//! has not met at all its samples cannot tell: see `heavy_tails`.
 
 use serde::{Deserialize, Serialize};
 

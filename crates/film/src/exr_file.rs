@@ -16,9 +16,8 @@ use exr::prelude::{
 };
 
 use crate::accumulation_file::Accumulation;
-use crate::atomic_write::write_atomically;
 use crate::colours::{Colours, channels_of_bands, named_channels};
-use crate::error::FileError;
+use crate::error::{FileError, write_atomically};
 use crate::estimates::Channel;
 use crate::film::Film;
 use crate::metadata::{Crop, ImageMetadata};

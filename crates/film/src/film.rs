@@ -8,6 +8,8 @@
 
 use std::ops::Range;
 
+use tyndall_machine::memory::{self, MemoryError};
+
 use crate::ranges::{RangeError, SampleRanges};
 use crate::sample::{Layers, Sample};
 use crate::sums::Sums;
@@ -16,6 +18,8 @@ use crate::sums::Sums;
 pub const TILE_EDGE: u32 = 16;
 /// The greatest film in pixels (35 GB of sums without layers).
 pub const MAX_PIXELS: u64 = 1 << 28;
+/// What writing takes for a pixel: some thirty channels of f32, once as they are and once as a file.
+const WRITTEN_BYTES: usize = 2 * 30 * size_of::<f32>();
 
 /// A rectangle of pixels; x to the right and y downwards from the upper left corner of the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,20 +110,9 @@ pub enum SizeError {
         /// Rows.
         height: u32,
     },
-    /// This machine has not the memory.
-    #[error(
-        "a picture of {width}x{height} pixels takes {:.1} GB of memory, more than there is; give a smaller \
-         resolution or fewer layers",
-        *.bytes as f64 * 1e-9
-    )]
-    Memory {
-        /// Columns.
-        width: u32,
-        /// Rows.
-        height: u32,
-        /// What the film takes when all of its layers are in use.
-        bytes: usize,
-    },
+    /// There is no memory for it.
+    #[error("{0}, such as a smaller resolution or fewer layers")]
+    Memory(#[from] MemoryError),
 }
 
 /// Number of pixels of a film of this size.
@@ -128,15 +121,6 @@ pub(crate) fn pixel_count(width: u32, height: u32) -> Result<usize, SizeError> {
         count @ 1..=MAX_PIXELS => Ok(count as usize),
         _ => Err(SizeError::Pixels { width, height }),
     }
-}
-
-/// Whether the system would hand out so much memory; it is given back untouched.
-fn can_allocate(bytes: usize) -> bool {
-    let mut probe: Vec<u8> = Vec::new();
-    let is_granted = probe.try_reserve_exact(bytes).is_ok();
-    // Without a use, the compiler may leave out the allocation and claim that it went well.
-    std::hint::black_box(&probe);
-    is_granted
 }
 
 /// Number of tiles of a film of this size.
@@ -148,12 +132,29 @@ impl Film {
     /// A film without samples.
     pub fn new(width: u32, height: u32, layers: Layers) -> Result<Self, SizeError> {
         let count = pixel_count(width, height)?;
-        let bytes = Sums::bytes(count, layers);
-        if !can_allocate(bytes) {
-            return Err(SizeError::Memory { width, height, bytes });
-        }
-        let sums = Sums::zero(count);
-        Ok(Self { width, height, layers, sums, complete: SampleRanges::default(), open: None })
+        let sums = Sums::default();
+        let film = Self { width, height, layers, sums, complete: SampleRanges::default(), open: None };
+        film.ask_for_rest(count)?;
+        Ok(Self { sums: Sums::zero(count), ..film })
+    }
+
+    /// Asks for the memory that is not taken yet, of layers that have seen nothing so far and of the files that will be
+    /// written: before rendering, when whatever else a render takes is taken.
+    ///
+    /// # Errors
+    /// If there is not so much.
+    pub fn ask_for_memory_to_come(&self) -> Result<(), SizeError> {
+        self.ask_for_rest(self.sums.pixels.len())
+    }
+
+    fn ask_for_rest(&self, count: usize) -> Result<(), SizeError> {
+        let rest = Sums::bytes(count, self.layers).saturating_sub(self.sums.taken_bytes());
+        let written = count.saturating_mul(WRITTEN_BYTES);
+        memory::ask((rest as u64).saturating_add(written as u64), || {
+            let Self { width, height, .. } = self;
+            format!("{width}x{height} pixels of {} bytes", (rest + written) / count.max(1))
+        })?;
+        Ok(())
     }
 
     /// Columns of pixels.
@@ -412,9 +413,9 @@ mod tests {
     }
 
     #[test]
-    fn a_film_beyond_all_memory_is_an_error() {
-        assert!(can_allocate(1 << 20) && !can_allocate(usize::MAX / 4));
+    fn a_pixel_takes_as_much_memory_as_is_stated() {
         assert_eq!(Sums::bytes(10, Layers::NONE), 1320);
+        assert_eq!(Film::new(2, 5, Layers::ALL).unwrap().sums.taken_bytes(), 1280);
     }
 
     #[test]

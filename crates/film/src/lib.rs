@@ -4,10 +4,10 @@
 //! sums, and the sums are developed into channels with their standard error, which go to [EXR](write_exr) and
 //! [PNG](write_png) files and into a [`Summary`].
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod accumulation_file;
-mod atomic_write;
 mod colours;
 pub mod comparison;
 mod error;
@@ -28,9 +28,8 @@ mod tone_map;
 mod warnings;
 
 pub use accumulation_file::Accumulation;
-pub use atomic_write::{remove_leftovers, write_atomically};
 pub use colours::{BandMean, Colours, named_channels};
-pub use error::FileError;
+pub use error::{FileError, write_atomically};
 pub use estimates::{Channel, Estimate, LUMINANCE};
 pub use exr_file::{write_bands_exr, write_exr};
 pub use film::{Film, FilmTile, MAX_PIXELS, MergeError, Rect, SizeError, TILE_EDGE};

@@ -8,8 +8,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::atomic_write::write_atomically;
-use crate::error::FileError;
+use crate::error::{FileError, write_atomically};
 use crate::film::Film;
 use crate::tone_map::{srgb_signal, tone_map};
 
@@ -38,7 +37,7 @@ pub fn png_bytes(film: &Film, exposure: f32) -> io::Result<Vec<u8>> {
 
 /// 8-bit sRGB, three bytes a pixel.
 fn encode(image: &[[f32; 3]], width: usize, exposure: f32) -> Vec<u8> {
-    let factor = exposure.exp2();
+    let factor = libm::exp2f(exposure);
     let mut bytes = Vec::with_capacity(image.len() * 3);
     for (index, colour) in image.iter().enumerate() {
         let (x, y) = ((index % width) as u32, (index / width) as u32);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use exr::prelude::{AttributeValue, MetaData};
 use serde::Deserialize;
+use tyndall_machine::files;
 
 use crate::accumulation_file::read_provenance;
 use crate::comparison::Picture;
@@ -109,7 +110,7 @@ impl Provenance {
     /// # Errors
     /// If the file cannot be read, or is none.
     pub fn of_summary(path: &Path) -> Result<Self, FileError> {
-        let text = std::fs::read(path).map_err(|error| FileError::io(path, error))?;
+        let text = files::read(path).map_err(|error| FileError::io(path, error))?;
         serde_json::from_slice(&text)
             .map_err(|error| FileError::unusable(path, format!("is no summary of a picture: {error}")))
     }

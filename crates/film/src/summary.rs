@@ -5,9 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::accumulation_file::Accumulation;
-use crate::atomic_write::write_atomically;
 use crate::colours::{BandMean, Colours, band_means};
-use crate::error::FileError;
+use crate::error::{FileError, write_atomically};
 use crate::estimates::Estimate;
 use crate::film::Film;
 use crate::heavy_tails::UnseenLight;

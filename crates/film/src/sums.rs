@@ -96,6 +96,21 @@ impl Sums {
         count.saturating_mul(size_of::<PixelSums>() + size_of::<f32>() + pixel)
     }
 
+    /// Memory that is taken by now.
+    pub fn taken_bytes(&self) -> usize {
+        size_of_val(&*self.pixels)
+            + size_of_val(&*self.depth)
+            + size_of_val(&*self.albedo)
+            + size_of_val(&*self.normal)
+            + size_of_val(&*self.object)
+            + size_of_val(&*self.catcher)
+            + size_of_val(&*self.emission)
+            + size_of_val(&*self.single)
+            + size_of_val(&*self.multiple)
+            + size_of_val(&*self.rejected)
+            + size_of_val(&*self.largest)
+    }
+
     /// Adds a sample to the pixel at `index`. If some number of it has no place in the sums (not finite, or too large),
     /// it is only counted as rejected: no sum holds anything of it.
     pub fn add(&mut self, index: usize, sample: &Sample, layers: Layers) {

@@ -32,7 +32,7 @@ pub fn tone_map(colour: [f32; 3]) -> [f32; 3] {
 
 /// The sRGB curve, 1.055 x^(1/2.4) − 0.055 above its straight foot, written so that 1 is exactly 1.
 pub fn srgb_signal(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.0 - 1.055 * (1.0 - linear.powf(1.0 / 2.4)) }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.0 - 1.055 * (1.0 - libm::powf(linear, 1.0 / 2.4)) }
 }
 
 #[cfg(test)]

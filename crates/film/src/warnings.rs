@@ -47,8 +47,9 @@ fn heavy_tail(film: &Film) -> Option<(f64, String)> {
         );
         return Some((unseen.bound, line));
     }
-    let largest =
-        film.largest_sample_share().filter(|&share| share > GREAT_SHARE && film.mean_sample_count() > 1.0)?;
+    // Of few samples each is a great part.
+    let samples = film.mean_sample_count() * f64::from(film.width()) * f64::from(film.height());
+    let largest = film.largest_sample_share().filter(|&share| share > GREAT_SHARE.max(10.0 / samples))?;
     let line = format!(
         "one sample makes {} of the picture's light: the error of its mean is known badly; more samples will tell (--spp)",
         percent(largest)
@@ -60,7 +61,7 @@ fn heavy_tail(film: &Film) -> Option<(f64, String)> {
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     // Two digits of 100 % or more are no longer two digits.
-    let decimals = (1.0 - percent.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let decimals = (1.0 - libm::log10(percent.abs()).floor()).clamp(0.0, 9.0) as usize;
     format!("{percent:.decimals$} %")
 }
 

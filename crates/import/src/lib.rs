@@ -4,10 +4,12 @@
 //! rendered or written like any other. What has no file of its own in the other's format (meshes and grids written out
 //! in the scene file) is put into files beside it ([`Sidecar`]). What cannot be said is told in a [`Note`] each.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod affine;
 mod error;
+mod include_chain;
 mod mesh;
 pub mod mitsuba;
 mod note;

@@ -83,7 +83,7 @@ impl HalfSpace {
 fn gauss_legendre() -> [(f64, f64); NODES] {
     let n = NODES as f64;
     std::array::from_fn(|index| {
-        let mut x = (std::f64::consts::PI * (index as f64 + 0.75) / (n + 0.5)).cos();
+        let mut x = libm::cos(std::f64::consts::PI * (index as f64 + 0.75) / (n + 0.5));
         let mut slope = 0.0;
         for _ in 0..20 {
             let (mut before, mut here) = (1.0, x);

@@ -1,6 +1,7 @@
 //! What media and surfaces do to light at a point: phase functions, BSDFs, coefficients, spectra and colour. Knows no
 //! geometry.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 pub mod albedo_inversion;

@@ -22,7 +22,7 @@ pub fn radiance(wavelength_nm: f64, kelvin: f64) -> f64 {
     }
     let wavelength = wavelength_nm * 1e-9;
     let exponent = PLANCK * SPEED_OF_LIGHT / (wavelength * BOLTZMANN * kelvin);
-    let per_metre = 2.0 * PLANCK * SPEED_OF_LIGHT.powi(2) / wavelength.powi(5) / exponent.exp_m1();
+    let per_metre = 2.0 * PLANCK * SPEED_OF_LIGHT.powi(2) / wavelength.powi(5) / libm::expm1(exponent);
     per_metre * 1e-9
 }
 
@@ -61,8 +61,8 @@ const STEP: f64 = 1e-3;
 impl BlackbodyColours {
     /// Computes the table.
     pub fn new() -> BlackbodyColours {
-        let steps = ((HOTTEST / COLDEST).ln() / STEP).ceil() as usize;
-        let colour = |step: usize| cie::into_gamut(rgb(COLDEST * (STEP * step as f64).exp()));
+        let steps = (libm::log(HOTTEST / COLDEST) / STEP).ceil() as usize;
+        let colour = |step: usize| cie::into_gamut(rgb(COLDEST * libm::exp(STEP * step as f64)));
         BlackbodyColours { colours: (0..=steps).map(colour).collect() }
     }
 
@@ -71,12 +71,12 @@ impl BlackbodyColours {
         if kelvin.is_nan() || kelvin < COLDEST {
             return DVec3::ZERO;
         }
-        let place = (kelvin / COLDEST).ln() / STEP;
+        let place = libm::log(kelvin / COLDEST) / STEP;
         let index = place as usize;
         let Some(&[low, high]) = self.colours.get(index..).and_then(|rest| rest.first_chunk()) else {
             return cie::into_gamut(rgb(kelvin));
         };
-        let [from, to] = [index, index + 1].map(|step| COLDEST * (STEP * step as f64).exp());
+        let [from, to] = [index, index + 1].map(|step| COLDEST * libm::exp(STEP * step as f64));
         low + (high - low) * ((kelvin - from) / (to - from))
     }
 }

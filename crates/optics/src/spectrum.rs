@@ -123,7 +123,7 @@ impl Spectrum {
             }
             Self::Sampled { wavelengths_nm, values } => interpolate(wavelengths_nm, values, wavelength_nm),
             Self::Blackbody { kelvin, scale } => scale * planck::radiance(wavelength_nm, *kelvin),
-            Self::PowerLaw { at_nm, value, exponent } => value * (wavelength_nm / at_nm).powf(*exponent),
+            Self::PowerLaw { at_nm, value, exponent } => value * libm::pow(wavelength_nm / at_nm, *exponent),
         }
     }
 

@@ -130,6 +130,12 @@ impl Accumulation {
         py.detach(|| self.sums().film.median_relative_error())
     }
 
+    /// The error to be held against one that is asked for: the median error, or the bound of what most pixels have not seen
+    /// yet, as a share of their light, if that is more than was asked for.
+    fn error_against(&self, py: Python<'_>, asked: f64) -> Option<f64> {
+        py.detach(|| self.0.film.error_against(asked))
+    }
+
     /// Memory that it takes, at most.
     #[getter]
     fn nbytes(&self) -> usize {

@@ -305,6 +305,14 @@ impl Render {
         py.detach(|| self.pictures.first().and_then(|picture| picture.film.median_relative_error()))
     }
 
+    /// The light that most pixels have not seen yet, as a share of what they show, at most, as far as the picture knows; `None`
+    /// if it is black.
+    #[getter]
+    fn unseen_light(&self, py: Python<'_>) -> Option<f64> {
+        let bounds = || self.pictures.iter().filter_map(|picture| picture.film.stated_unseen_light());
+        py.detach(|| bounds().map(|unseen| unseen.bound).reduce(f64::max))
+    }
+
     /// What has to be told along with the picture, where its stated errors do not hold; one line each.
     #[getter]
     fn warnings(&self, py: Python<'_>) -> Vec<String> {

@@ -119,6 +119,30 @@ def test_a_render_ends_at_its_error_or_time(ball: Ball) -> None:
     assert tyndall.render(ball, error=1e-9, time=0.2, progress=False).complete
 
 
+def test_what_few_pixels_have_seen_and_what_the_film_cannot_hold_is_told(ball: Ball) -> None:
+    # Glass about a lamp: only chance finds it, one path in 170.
+    lamp = {"sphere": {"center": [0, 9, 0], "radius": 0.7}, "material": {"type": "diffuse", "reflectance": 0}}
+    scene = {
+        "camera": {"position": [0, 6, 0], "target": [0, 0, 0], "up": [0, 0, 1]},
+        "film": {"resolution": [32, 18]},
+        "light": [{"type": "constant", "radiance": 1}],
+        "shape": [
+            {"rectangle": {"corner": [-9, 0, -9], "u": [0, 0, 18], "v": [18, 0, 0]}, "material": {"type": "diffuse", "reflectance": 0.5}},
+            {**lamp, "emission": {"radiance": 50}},
+            {"sphere": {"center": [0, 9, 0], "radius": 1.2}, "material": {"type": "dielectric", "index": 1.0001}},
+        ],
+    }
+    with pytest.warns(UserWarning, match="of their light to one sample"):
+        picture = tyndall.render(scene, spp=16, progress=False)
+    assert picture.unseen_light > 0.1 > picture.median_error and len(picture.warnings) == 1
+    assert picture.accumulation.error_against(0.1) == pytest.approx(picture.unseen_light, rel=0.3)
+    scene["shape"] = [scene["shape"][0], {**lamp, "emission": {"radiance": 1e11}}]
+    scene["camera"] = {"position": [0, 6, 0], "target": [0, 9, 0], "up": [0, 0, 1]}
+    with pytest.warns(UserWarning, match="are left out"):
+        picture = tyndall.render(scene, spp=2, progress=False)
+    assert picture.rejected > 0 and np.isfinite(picture.image).all()
+
+
 def test_pictures_are_written_by_their_extension(ball: Ball) -> None:
     picture = tyndall.render(ball, spp=2, progress=False)
     for name in ["a.exr", "a.png", "a.json", "a.acc"]:

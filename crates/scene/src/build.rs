@@ -173,7 +173,8 @@ fn build_volume(
             (atmosphere, DAffine3::IDENTITY)
         }
         VolumeSource::Procedural(ProceduralDescription::Cumulus { seed, resolution, center, size }) => {
-            let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size);
+            let grid = procedural::cumulus(*seed, *resolution, DVec3::from_array(*center), *size)
+                .map_err(|error| SceneError::file(Path::new(&name), error.to_string()))?;
             let bricks = build_bricks(description, &grid, Path::new(&name), notes)?;
             grid_density(bricks, &grid)
         }
@@ -306,7 +307,7 @@ fn build_bricks(
             ));
         }
         // The surface is where the distance is 0; a voxel's edge is the cube root of its volume.
-        let voxel = grid.index_to_world.matrix3.determinant().abs().cbrt() as f32;
+        let voxel = libm::cbrt(grid.index_to_world.matrix3.determinant().abs()) as f32;
         BrickGrid::mapped(grid, storage, |distance| (0.5 - distance / voxel).clamp(0.0, 1.0))
     } else {
         // Voxel by voxel: cut off after filtering, a single voxel drawn in place of the mixture of eight would have

@@ -58,7 +58,7 @@ impl Camera {
         let is_orthographic = description.projection == Projection::Orthographic;
         let half_height = match description.height {
             Some(height) if is_orthographic => 0.5 * height,
-            _ => (0.5 * description.vertical_fov.to_radians()).tan(),
+            _ => libm::tan(0.5 * description.vertical_fov.to_radians()),
         };
         let half_width = half_height * f64::from(full_resolution[0]) / f64::from(full_resolution[1]);
         let [left, top, width, height] = crop.unwrap_or([0, 0, full_resolution[0], full_resolution[1]]);
@@ -135,7 +135,7 @@ fn concentric_disc(u: [f64; 2]) -> [f64; 2] {
     }
     let (radius, angle) =
         if a.abs() > b.abs() { (a, FRAC_PI_4 * b / a) } else { (b, FRAC_PI_2 - FRAC_PI_4 * a / b) };
-    [radius * angle.cos(), radius * angle.sin()]
+    [radius * libm::cos(angle), radius * libm::sin(angle)]
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ impl Exponential {
 
     /// The value at the distance `t`.
     pub fn value(&self, t: f64) -> f64 {
-        (self.logarithm - self.rate * t).exp()
+        libm::exp(self.logarithm - self.rate * t)
     }
 
     /// The integral from `start` to `end`, which may be infinite.
@@ -36,7 +36,7 @@ impl Exponential {
         } else if exponent.abs() < 1e-9 {
             first * (end - start) * (1.0 - 0.5 * exponent)
         } else {
-            first * -(-exponent).exp_m1() / self.rate
+            first * -libm::expm1(-exponent) / self.rate
         }
     }
 
@@ -44,7 +44,7 @@ impl Exponential {
     pub fn distance_of_integral(&self, start: f64, integral: f64) -> f64 {
         let logarithm = self.logarithm - self.rate * start;
         // The distance over which the value at the start would give the integral.
-        let constant = integral * (-logarithm).exp();
+        let constant = integral * libm::exp(-logarithm);
         let exponent = self.rate * constant;
         if self.rate == 0.0 {
             start + constant
@@ -54,9 +54,9 @@ impl Exponential {
             f64::INFINITY
         } else if exponent < -1e18 {
             // Where the value at the start underflows, far above an atmosphere.
-            start - ((-self.rate * integral).ln() - logarithm) / self.rate
+            start - (libm::log(-self.rate * integral) - logarithm) / self.rate
         } else {
-            start - (-exponent).ln_1p() / self.rate
+            start - libm::log1p(-exponent) / self.rate
         }
     }
 }

@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
+use tyndall_machine::files;
 
 use crate::canonical_names::without_names;
 use crate::description::{RenderDescription, SceneDescription};
@@ -78,7 +79,7 @@ pub fn scene_hash_with(description: &SceneDescription, files: &SceneFiles) -> Re
 /// If it cannot be read.
 pub fn content_hash(path: &Path) -> Result<SceneHash, SceneError> {
     let refuse = |error: std::io::Error| SceneError::file(path, error.to_string());
-    let mut file = std::fs::File::open(path).map_err(refuse)?;
+    let mut file = files::open(path).map_err(refuse)?;
     let mut hasher = Sha256::new();
     let mut block = vec![0; 1 << 20];
     loop {

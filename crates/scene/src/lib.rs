@@ -3,6 +3,7 @@
 //! Two halves. The *description* is what a person wrote: plain data that is read from and printed as TOML
 //! ([`SceneDocument`], [`SceneDescription`]). A [`Scene`], built from it, is ready to trace.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod build;
@@ -23,6 +24,7 @@ mod phase;
 mod phase_curve;
 pub mod procedural;
 mod ready;
+mod rotation;
 mod scene_files;
 pub mod sky;
 mod spectra;
@@ -44,6 +46,7 @@ pub use self::mie::{MieSpheres, mie_spheres};
 pub use self::phase::{GREY_WAVELENGTH_NM, build_phase, grey_phase};
 pub use self::phase_curve::PhaseCurve;
 pub use self::ready::Scene;
+pub use self::rotation::{angle_between, rotation};
 pub use self::scene_files::{MemoryGrid, SceneFiles};
 pub use self::spectra::{MediumPhase, MediumSpectra, SpectralCoefficients};
 pub use self::surface::{Hit, Surfaces};

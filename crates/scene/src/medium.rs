@@ -141,7 +141,7 @@ impl Volume {
     pub fn density_at(&self, local: DVec3) -> f64 {
         match &self.density {
             Density::Grid(grid) => grid.value(local),
-            Density::Atmosphere { bottom, scale_height, .. } => (-(local.y - bottom) / scale_height).exp(),
+            Density::Atmosphere { bottom, scale_height, .. } => libm::exp(-(local.y - bottom) / scale_height),
             Density::Everywhere | Density::Box { .. } | Density::Sphere | Density::Slab { .. } => 1.0,
         }
     }

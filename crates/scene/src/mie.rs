@@ -1,7 +1,9 @@
 //! From descriptions of particles to what Lorenz-Mie theory makes of them.
 
 use std::f64::consts::TAU;
+use std::io::Read;
 use std::path::Path;
+use tyndall_machine::files;
 use tyndall_optics::mie::{MieAverage, MieCache, MieError, Particles, SizeLaw, Sphere};
 use tyndall_optics::{PhaseFunction, RefractiveIndexTable, SpectralPhase, Spectrum, Substance};
 
@@ -134,11 +136,12 @@ fn build_substance(choice: &SubstanceChoice, folder: &Path) -> Result<Substance,
     };
     let path = folder.join(file);
     let refuse = |message: String| SceneError::file(&path, message);
-    let length = std::fs::metadata(&path).map_err(|error| refuse(error.to_string()))?.len();
+    let file = files::open(&path).map_err(|error| refuse(error.to_string()))?;
+    let length = file.metadata().map_err(|error| refuse(error.to_string()))?.len();
     if length > GREATEST_TABLE {
         return Err(refuse("is more than 4 MiB: that is no table of a refractive index".into()));
     }
-    let text = std::fs::read_to_string(&path).map_err(|error| refuse(error.to_string()))?;
+    let text = std::io::read_to_string(file.take(length)).map_err(|error| refuse(error.to_string()))?;
     let table = RefractiveIndexTable::parse(&text).map_err(|error| refuse(error.to_string()))?;
     Ok(Substance::Table(path.display().to_string(), table))
 }

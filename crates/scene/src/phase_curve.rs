@@ -88,8 +88,8 @@ impl PhaseCurve {
     pub fn value(&self, degrees: f64) -> f64 {
         match self.incidence {
             // Exactly forward the value depends on the azimuth from which that is approached.
-            Some(before) => self.azimuthal_mean(before, degrees.max(1e-5).to_radians().sin_cos()),
-            None => self.value_at_cosine(degrees.to_radians().cos()),
+            Some(before) => self.azimuthal_mean(before, libm::sincos(degrees.max(1e-5).to_radians())),
+            None => self.value_at_cosine(libm::cos(degrees.to_radians())),
         }
     }
 
@@ -110,7 +110,7 @@ impl PhaseCurve {
     fn azimuthal_mean(&self, before: DVec3, (sin, cos): (f64, f64)) -> f64 {
         let (tangent, bitangent) = before.any_orthonormal_pair();
         let values = (0..AZIMUTHS).map(|i| {
-            let (sin_phi, cos_phi) = (TAU * (f64::from(i) + 0.5) / f64::from(AZIMUTHS)).sin_cos();
+            let (sin_phi, cos_phi) = libm::sincos(TAU * (f64::from(i) + 0.5) / f64::from(AZIMUTHS));
             let after = before * cos + tangent * (sin * cos_phi) + bitangent * (sin * sin_phi);
             self.phase.value(before, after.normalize())
         });

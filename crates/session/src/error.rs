@@ -31,6 +31,9 @@ pub enum SessionError {
     /// The picture is too large.
     #[error(transparent)]
     Size(#[from] SizeError),
+    /// A thread of a render ended by a mistake in Tyndall.
+    #[error("a part of the render failed by a mistake in Tyndall, as told above; please report it")]
+    Panicked,
     /// A file is not there.
     #[error("{}: there is no such file; check its name and folder", .0.display())]
     NotFound(PathBuf),

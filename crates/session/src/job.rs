@@ -1,5 +1,6 @@
 //! A render: a scene ready to trace, the picture so far, and the loop over passes that makes more of it.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -82,6 +83,8 @@ impl Job {
         let mut notes: Vec<String> = input.notes().iter().chain(&built.notes).cloned().collect();
         notes.extend(estimators.notes().iter().map(ToString::to_string));
         notes.extend(spectral_note(&built.scene));
+        // When all that the scene takes is taken.
+        films.iter().try_for_each(Film::ask_for_memory_to_come)?;
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let pictures = empty_pictures(films, &observers, description, *hash, estimators);
         Ok(Self {
@@ -146,7 +149,8 @@ impl Job {
     /// sees the picture after each.
     ///
     /// # Errors
-    /// If the picture that was resumed holds samples that the plan does not reach.
+    /// If the picture that was resumed holds samples that the plan does not reach, or a thread panicked; all that was
+    /// rendered before is in the picture.
     pub fn run(
         &mut self,
         plan: &Plan,
@@ -167,8 +171,12 @@ impl Job {
                 let refuse =
                     |error| SessionError::refuse_file(resumed, format!("{error} (--spp or --samples)"));
                 picture.film.open_range(pass.start).map_err(refuse)?;
-                let outcome = renderer.render_pass(&mut picture.film, pass.end, &self.options, control);
+                // The film holds whatever tiles were done, as after a cancellation.
+                let outcome = catch_unwind(AssertUnwindSafe(|| {
+                    renderer.render_pass(&mut picture.film, pass.end, &self.options, control)
+                }));
                 picture.metadata.seconds = clock.seconds();
+                let outcome = outcome.map_err(|_| SessionError::Panicked)?;
                 if outcome == Outcome::Cancelled {
                     return Ok(Outcome::Cancelled);
                 }

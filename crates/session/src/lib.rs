@@ -41,6 +41,7 @@ mod picture;
 mod readings;
 mod readings_report;
 mod volume_file;
+mod writable;
 
 pub use checkpoint::Checkpoint;
 pub use error::SessionError;
@@ -49,8 +50,9 @@ pub use frames::{Frames, at_frame, file_at_frame, holds_frame};
 pub use goal::{Goal, Plan};
 pub use input::{Input, InputOptions, ReadyScene};
 pub use job::{Job, JobOptions, is_rendered};
-pub use output::{Output, check_writable, write_all};
+pub use output::{Output, write_all};
 pub use picture::colours;
 pub use readings::{Reading, read_meters};
 pub use readings_report::readings_report;
 pub use volume_file::{RawVolume, check_input, read_volume};
+pub use writable::{check_no_input, check_not_same, check_writable};

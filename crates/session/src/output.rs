@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tyndall_film::{
-    Accumulation, Colours, ImageMetadata, Provenance, Summary, remove_leftovers, write_bands_exr, write_png,
-};
+use tyndall_film::{Accumulation, Colours, ImageMetadata, Provenance, Summary, write_bands_exr, write_png};
 
 use crate::frames::file_at_frame;
 use crate::{Plan, SessionError};
@@ -116,33 +114,6 @@ fn is_whole_png(path: &Path) -> bool {
 pub fn write_all(outputs: &[Output], pictures: &[Accumulation], exposure: f32) -> Result<(), SessionError> {
     let written: Vec<_> = outputs.iter().map(|output| output.write(pictures, exposure)).collect();
     written.into_iter().collect()
-}
-
-/// Refuses files that cannot be made: it is better to hear now than after an hour of rendering. What killed runs have left
-/// of writing them is cleared away.
-///
-/// # Errors
-/// If there is one.
-pub fn check_writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), SessionError> {
-    for path in paths {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            return Err(SessionError::refuse_file(path, "its folder does not exist; create it first"));
-        }
-        if path.is_dir() {
-            return Err(SessionError::refuse_file(path, "is a folder; give the name of a file"));
-        }
-        // Files appear under another name first, in the same folder.
-        if let Err(error) = tempfile::tempfile_in(folder) {
-            return Err(SessionError::refuse_file(
-                path,
-                format!("nothing can be written in its folder ({error}); choose another"),
-            ));
-        }
-        remove_leftovers(path);
-    }
-    Ok(())
 }
 
 #[cfg(test)]

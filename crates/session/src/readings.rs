@@ -19,6 +19,8 @@ pub struct Reading<'a> {
     pub meter: &'a MeterDescription,
     /// What it has measured.
     pub measurement: Measurement,
+    /// One line for each reason to doubt its standard errors.
+    pub doubts: Vec<String>,
     /// Time that it took.
     pub seconds: f64,
 }
@@ -43,12 +45,18 @@ pub fn read_meters<'a>(
     for (number, meter) in (0..).zip(&description.meters) {
         let called = meter.name().map_or_else(|| format!("meter.{number}"), str::to_owned);
         let start = Instant::now();
-        let measurement = measure(scene, meter, &options(number), cancel)
+        let (measurement, doubts) = measure(scene, meter, &options(number), cancel)
             .map_err(|problem| SessionError::refuse(name, format!("[[meter]] `{called}`: {problem}")))?;
         if measurement.samples() == 0 {
             break;
         }
-        readings.push(Reading { name: called, meter, measurement, seconds: start.elapsed().as_secs_f64() });
+        readings.push(Reading {
+            name: called,
+            meter,
+            measurement,
+            doubts,
+            seconds: start.elapsed().as_secs_f64(),
+        });
     }
     Ok(readings)
 }

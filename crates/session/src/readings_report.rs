@@ -33,6 +33,9 @@ fn of_one(reading: &Reading) -> Map<String, Json> {
             object.insert(key.into(), several(values));
         }
     }
+    if !reading.doubts.is_empty() {
+        object.insert("warnings".into(), reading.doubts.as_slice().into());
+    }
     object.insert("samples".into(), reading.measurement.samples().into());
     object.insert("seconds".into(), reading.seconds.into());
     object

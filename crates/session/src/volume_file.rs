@@ -62,7 +62,7 @@ pub fn read_volume(
     Ok(tyndall_volumes::read(path, &ReadRequest { grids, raw })?)
 }
 
-/// Refuses names of files that do not exist, and folders.
+/// Refuses names of files that do not exist, and folders, pipes and devices.
 ///
 /// # Errors
 /// If the path is either.
@@ -71,6 +71,10 @@ pub fn check_input(path: &Path) -> Result<(), SessionError> {
         Ok(metadata) if metadata.is_dir() => {
             Err(SessionError::refuse_file(path, "is a folder; give a file in it"))
         }
+        Ok(metadata) if !metadata.is_file() => Err(SessionError::refuse_file(
+            path,
+            "is a pipe or a device; put its content into a file and give that",
+        )),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
             Err(SessionError::NotFound(path.to_owned()))
         }

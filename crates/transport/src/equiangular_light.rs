@@ -132,7 +132,7 @@ impl<'a> LitSegment<'a> {
     /// μt T: density of collisions at the distance `t`.
     fn collision_density(&self, t: f64) -> f64 {
         let lookups = &mut Lookups::default();
-        self.along.mu_t(t, lookups) * (-self.along.thickness(t, lookups)).exp()
+        self.along.mu_t(t, lookups) * libm::exp(-self.along.thickness(t, lookups))
     }
 
     /// Densities with which the three ways find the light from the distance `t`: a place along the stretch, next-event

@@ -5,6 +5,8 @@
 //! does the same with many paths at once, `spectral` in media that depend on colour. [`render_pass`] fills a film with any
 //! of them. [`walk`] follows light the other way, from where it enters, for fluxes.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod along_ray;
 pub mod counters;
 pub mod distance;
@@ -26,6 +28,7 @@ mod shadow_catcher;
 mod slots;
 mod spectral;
 mod surface_vertex;
+mod threads;
 pub mod transmittance;
 pub mod walk;
 mod way;

@@ -8,8 +8,11 @@ use tyndall_scene::{Density, Ray, Scene, Volume};
 
 use crate::walk::{
     Body, BodyPowers, Estimate, Incidence, Layer, LayerFluxes, LightMeter, LightMeterKind, Tile, WalkOptions,
-    in_one_channel, run,
+    doubts, in_one_channel, run,
 };
+
+/// What a meter has measured, and one line for each reason to doubt its standard errors.
+pub type Doubted = (Measurement, Vec<String>);
 
 /// What a meter has measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +45,7 @@ pub fn measure(
     meter: &MeterDescription,
     options: &WalkOptions,
     cancel: &AtomicBool,
-) -> Result<Measurement, String> {
+) -> Result<Doubted, String> {
     match meter {
         MeterDescription::Layer(meter) => layer(scene, meter, options, cancel),
         MeterDescription::Body(meter) => body(scene, meter, options, cancel),
@@ -64,7 +67,7 @@ fn layer(
     meter: &LayerMeterDescription,
     options: &WalkOptions,
     cancel: &AtomicBool,
-) -> Result<Measurement, String> {
+) -> Result<Doubted, String> {
     let volumes = grey(scene, meter.channel)?;
     if meter.periodic.is_none()
         && let Some(volume) = volumes.iter().find(|volume| !is_plane_parallel(volume))
@@ -88,7 +91,9 @@ fn layer(
         views: meter.radiance.iter().map(|&angles| direction_of(angles)).collect(),
         depth_limit: None,
     };
-    Ok(Measurement::Layer(layer.fluxes(&run(&layer, options, cancel))))
+    let tallies = run(&layer, options, cancel);
+    let doubts = doubts(&tallies, layer.radiance_tallies());
+    Ok((Measurement::Layer(layer.fluxes(&tallies)), doubts))
 }
 
 fn body(
@@ -96,11 +101,13 @@ fn body(
     meter: &BodyMeterDescription,
     options: &WalkOptions,
     cancel: &AtomicBool,
-) -> Result<Measurement, String> {
+) -> Result<Doubted, String> {
     let volumes = grey(scene, meter.channel)?;
     let direction = DVec3::from_array(meter.direction).normalize();
     let body = Body::new(volumes, direction, meter.bins as usize)?;
-    Ok(Measurement::Body(body.powers(&run(&body, options, cancel))))
+    let tallies = run(&body, options, cancel);
+    // Each photon brings 1 at most to what becomes of the light: rare ones cannot weigh much.
+    Ok((Measurement::Body(body.powers(&tallies)), doubts(&tallies, [])))
 }
 
 fn light(
@@ -108,7 +115,7 @@ fn light(
     kind: LightMeterKind,
     options: &WalkOptions,
     cancel: &AtomicBool,
-) -> Result<Measurement, String> {
+) -> Result<Doubted, String> {
     if scene.is_chromatic() && matches!(kind, LightMeterKind::Irradiance { .. }) {
         return Err(
             "irradiance is not measured yet where extinction depends on colour: measure `radiance`, or make \
@@ -118,7 +125,8 @@ fn light(
     }
     let meter = LightMeter { scene, kind };
     let tallies = run(&meter, options, cancel);
-    Ok(Measurement::Light(meter.values(&tallies), tallies.photons()))
+    let doubts = doubts(&tallies, (0..).zip(["red", "green", "blue"]));
+    Ok((Measurement::Light(meter.values(&tallies), tallies.photons()), doubts))
 }
 
 fn grey(scene: &Scene, channel: Option<Channel>) -> Result<Vec<Volume>, String> {
@@ -146,7 +154,7 @@ fn is_plane_parallel(volume: &Volume) -> bool {
 
 /// The unit vector at `theta` from +y and `phi` about it, degrees.
 fn direction_of([theta, phi]: [f64; 2]) -> DVec3 {
-    let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
-    let (sin_phi, cos_phi) = phi.to_radians().sin_cos();
+    let (sin_theta, cos_theta) = libm::sincos(theta.to_radians());
+    let (sin_phi, cos_phi) = libm::sincos(phi.to_radians());
     DVec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi)
 }

@@ -3,8 +3,8 @@
 //! Which thread renders which block, and in which order, changes nothing: every path has random numbers of its own
 //! and the film adds exactly.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use tyndall_film::{Film, FilmTile, Sample, TILE_EDGE};
 use tyndall_lanes::Random;
 use tyndall_scene::description::{Integrator, Sampler};
@@ -17,6 +17,7 @@ use crate::fast_spectral::{self, FastSpectralScene};
 use crate::first_draws::FirstDraws;
 use crate::reference;
 use crate::spectral::SpectralIntegrator;
+use crate::threads;
 
 /// How to render.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +39,7 @@ pub struct RenderOptions {
 #[derive(Debug, Default)]
 pub struct Control {
     /// Set to stop soon; blocks under way are given up.
-    pub cancel: AtomicBool,
+    pub cancel: Arc<AtomicBool>,
     /// Samples (paths) finished so far, over all passes.
     pub samples: AtomicU64,
     /// What all passes did, as far as it is [counted](crate::counters).
@@ -135,12 +136,7 @@ impl<'a> Renderer<'a> {
                 }
             }
         };
-        std::thread::scope(|scope| {
-            for _ in 1..options.threads.max(1) {
-                scope.spawn(work);
-            }
-            work();
-        });
+        threads::share(options.threads, work);
         if control.cancel.load(Ordering::Relaxed) { Outcome::Cancelled } else { Outcome::Complete }
     }
 }

@@ -6,6 +6,7 @@
 use std::io::{self, Write};
 
 use glam::DAffine3;
+use tyndall_machine::memory;
 
 use crate::dense::{EDGE, sound_shape};
 use crate::dense_box::DenseBox;
@@ -39,6 +40,12 @@ where
         Fault::Damaged(what) | Fault::Unsupported(what) => ArrayError(what),
         Fault::Io(error) => ArrayError(error.to_string()),
     })?;
+    let count = shape.iter().fold(1usize, |all, edge| all.saturating_mul(edge.next_multiple_of(EDGE)));
+    memory::ask_for(count, size_of::<T>(), || {
+        let [x, y, z] = shape;
+        format!("{x} x {y} x {z} voxels of {} bytes", size_of::<T>())
+    })
+    .map_err(|error| ArrayError(error.to_string()))?;
     let mut tree =
         Tree { background: T::default(), tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
     for x in (0..shape[0]).step_by(EDGE) {
@@ -125,6 +132,9 @@ impl Grid {
 
 fn array_of<T: Voxel>(tree: &Tree<T>) -> Result<DenseArray, Fault> {
     let dense = DenseBox::of(tree)?;
+    let count = dense.shape.iter().product::<usize>();
+    // Growing copies what there is.
+    memory::ask_for(count, 2 * T::CHANNELS * size_of::<f32>(), || format!("2 arrays of {count} voxels"))?;
     let mut sink = Floats(Vec::new());
     dense.write(tree, AxisOrder::ZFastest, &mut sink)?;
     Ok(DenseArray { origin: dense.min, shape: dense.shape, channels: T::CHANNELS, values: sink.0 })

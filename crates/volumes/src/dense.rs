@@ -6,6 +6,8 @@
 
 use std::io::Read;
 
+use tyndall_machine::memory;
+
 use crate::element::{AxisOrder, ByteOrder, Element};
 use crate::fault::Fault;
 use crate::{GridValues, LEAF_VOXELS, Leaf, Tile, Tree};
@@ -121,14 +123,22 @@ impl Dense {
         };
         let mut tree =
             Tree { background: T::default(), tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
+        let leaves = self.shape.iter().fold(1usize, |all, edge| all.saturating_mul(edge.div_ceil(EDGE)));
         if reserve {
+            memory::ask_for(leaves, LEAF_VOXELS * size_of::<T>(), || {
+                format!("{nx} x {ny} x {nz} voxels of {} bytes", size_of::<T>())
+            })?;
             // Address space, not memory: pages are taken as leaves come, and nothing is ever copied to grow.
-            let leaves: usize = self.shape.iter().map(|edge| edge.div_ceil(EDGE)).product();
             let _ = tree.leaf_values.try_reserve_exact(leaves.saturating_mul(LEAF_VOXELS));
         }
         let mut slab = Vec::new();
         for first in (0..self.shape[slow]).step_by(EDGE) {
             let planes = EDGE.min(self.shape[slow] - first);
+            if !reserve {
+                // What is not known to be there is granted as it comes; growing copies what there is.
+                let held = tree.leaf_values.len().saturating_mul(size_of::<T>());
+                memory::ask_for(2, held, || format!("2 x {} voxels", tree.leaf_values.len()))?;
+            }
             self.read_slab(source, planes * strides[slow], &mut slab)?;
             let mut corner = [0; 3];
             corner[slow] = first;

@@ -6,6 +6,8 @@
 use std::io;
 use std::path::Path;
 
+use tyndall_machine::memory::MemoryError;
+
 use crate::ReadError;
 
 /// A [`ReadError`] that lacks its path.
@@ -38,6 +40,12 @@ impl Fault {
             Self::Damaged(what) => ReadError::Damaged { path, what: one_line(&what) },
             Self::Unsupported(what) => ReadError::Unsupported { path, what: one_line(&what) },
         }
+    }
+}
+
+impl From<MemoryError> for Fault {
+    fn from(error: MemoryError) -> Self {
+        Self::Io(error.into())
     }
 }
 

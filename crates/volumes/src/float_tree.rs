@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::{GridValues, Leaf, Tile, Tree};
+use crate::{GridValues, LEAF_VOXELS, Leaf, Tile, Tree};
 
 /// A tree of floats, scalar or vector: borrowed where the grid has them, else converted.
 ///
@@ -28,6 +28,18 @@ impl<'a> FloatTree<'a> {
             }
         })
     }
+}
+
+/// What [`FloatTree::of`] takes, in bytes, if it has to convert.
+pub(crate) fn converted_bytes(values: &GridValues) -> u64 {
+    let leaves = match values {
+        GridValues::Float(_) | GridValues::Vec3(_) => 0,
+        GridValues::Double(tree) => tree.leaves.len(),
+        GridValues::Int32(tree) => tree.leaves.len(),
+        GridValues::Int64(tree) => tree.leaves.len(),
+        GridValues::Bool(tree) | GridValues::Mask(tree) => tree.leaves.len(),
+    };
+    (leaves as u64).saturating_mul((LEAF_VOXELS * size_of::<f32>() + size_of::<Leaf>()) as u64)
 }
 
 fn converted<T: Copy>(tree: &Tree<T>, to_float: impl Fn(T) -> f32) -> Tree<f32> {

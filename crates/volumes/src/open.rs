@@ -4,11 +4,11 @@
 //! file named `.vdb` is read as what it is.
 
 use std::fmt;
-use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
+use tyndall_machine::files;
 
 use crate::fault::{Fault, one_line};
 use crate::raw::RawShape;
@@ -117,10 +117,7 @@ pub struct VolumeFile {
 /// If the file cannot be opened, is damaged or of no known format, lacks a grid asked for by name, or has none that
 /// can be read.
 pub fn read(path: &Path, request: &ReadRequest) -> Result<VolumeFile, ReadError> {
-    let file = File::open(path).map_err(|error| Fault::Io(error).at(path))?;
-    if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
-        return Err(Fault::unsupported("is a folder; give a volume file in it").at(path));
-    }
+    let file = files::open(path).map_err(|error| Fault::Io(error).at(path))?;
     read_source(BufReader::new(file), path, request, || vdb::read(path, &request.grids))
 }
 

@@ -3,14 +3,15 @@
 //! The file is written under another name in the same folder and renamed when it is whole: a reader never sees half
 //! a file, and a failure leaves what was there before.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use tyndall_machine::{memory, write_atomically};
 
 use crate::fault::Fault;
+use crate::float_tree::converted_bytes;
 use crate::{Codec, Format, Grid, WriteError, WriteOptions, nifti, npy, nvdb, raw, vdb, vol};
 
 /// Writes `grids` in the format of the extension of `path`; returns the path written, which for `.raw` is given the
@@ -43,12 +44,17 @@ pub fn write(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<Path
         Format::Raw => only(grids).and_then(|grid| raw::name_with_shape(path, grid)).map_err(error)?,
         _ => path.to_path_buf(),
     };
-    atomically(&path_written, |out| write_to(out, format, grids, options.codec)).map_err(error)?;
+    if path.file_name().is_none() {
+        return Err(error(Fault::unsupported("is no name for a file")));
+    }
+    write_atomically(&path_written, |out| write_to(out, format, grids, options.codec)).map_err(error)?;
     Ok(path_written)
 }
 
 /// Writes a file of any format but that of OpenVDB, whose writer makes its own file.
 fn write_to(out: &mut dyn Write, format: Format, grids: &[Grid], codec: Codec) -> Result<(), Fault> {
+    let converted = grids.iter().map(|grid| converted_bytes(&grid.values)).max().unwrap_or(0);
+    memory::ask(converted, || "its values as floats".to_owned())?;
     match format {
         Format::OpenVdb => Ok(()),
         Format::NanoVdb => nvdb::write(out, grids, codec),
@@ -75,26 +81,4 @@ fn only(grids: &[Grid]) -> Result<&Grid, Fault> {
             Err(Fault::Unsupported(format!("this format holds one grid; choose one of {}", names.join(", "))))
         }
     }
-}
-
-/// Lets `write` fill a file beside `path`, which takes its place when all went well.
-fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), Fault>) -> Result<(), Fault> {
-    let Some(name) = path.file_name() else {
-        return Err(Fault::unsupported("is no name for a file"));
-    };
-    let mut unfinished = std::ffi::OsString::from(".");
-    unfinished.push(name);
-    unfinished.push(format!(".{}.unfinished", std::process::id()));
-    let unfinished = path.with_file_name(unfinished);
-    let file = File::create(&unfinished).map_err(Fault::Io)?;
-    let mut out = BufWriter::with_capacity(1 << 20, file);
-    let result = write(&mut out)
-        .and_then(|()| out.into_inner().map_err(|error| Fault::Io(error.into_error())))
-        .and_then(|file| file.sync_all().map_err(Fault::Io))
-        .and_then(|()| fs::rename(&unfinished, path).map_err(Fault::Io));
-    if result.is_err() {
-        // The failure itself is what the user has to hear of.
-        let _ = fs::remove_file(&unfinished);
-    }
-    result
 }

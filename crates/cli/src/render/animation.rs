@@ -3,21 +3,23 @@
 //! Memory is that of two frames at most: a scene is begun when the one before the present is gone.
 
 use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 
 use miette::miette;
 use tyndall_session::{
-    Frames, Input, Job, JobOptions, Output, Plan, SessionError, check_writable, file_at_frame, is_rendered,
+    Frames, Input, Job, JobOptions, Output, Plan, SessionError, check_no_input, check_writable,
+    file_at_frame, is_rendered,
 };
 use tyndall_transport::Control;
 
-use super::picture::Target;
+use super::picture::{Target, open_checkpoint};
 use super::progress::FramePosition;
 use super::{Args, job_options, outputs};
 use crate::Done;
-use crate::interrupt::stop_on_interrupt;
+use crate::interrupt::stop_on_signals;
 use crate::terminal::tell;
 
 /// What there is to do for a frame.
@@ -32,19 +34,19 @@ enum Prepared {
 pub fn run(args: &Args, input: Input, frames: Frames) -> miette::Result<Done> {
     let outputs = outputs(args, &input)?;
     input.check_frames(&frames)?;
-    check_files(args, &outputs, &frames)?;
+    check_files(args, &input, &outputs, &frames)?;
     args.estimators.tell_integrator(args.integrator);
     let control = Arc::new(Control::default());
-    stop_on_interrupt(&control)?;
+    stop_on_signals(&control.cancel)?;
     let frame_maker = Arc::new(FrameMaker { options: job_options(args), outputs, args: args.clone(), input });
     let mut notes = HashSet::new();
     let mut numbers = frames.iter();
-    let mut next = numbers.next().map(|frame| frame_maker.begin(frame));
+    let mut next = numbers.next().map(|frame| frame_maker.begin(frame)).transpose()?;
     let mut position = 0;
     let mut skipped = 0_u64;
     while let Some((frame, building)) = next {
         let prepared = building.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-        next = numbers.next().map(|frame| frame_maker.begin(frame));
+        next = numbers.next().map(|frame| frame_maker.begin(frame)).transpose()?;
         position += 1;
         if control.cancel.load(Ordering::Relaxed) {
             return Ok(Done::Interrupted);
@@ -55,11 +57,10 @@ pub fn run(args: &Args, input: Input, frames: Frames) -> miette::Result<Done> {
         };
         let new_notes = job.notes().iter().filter(|note| notes.insert((*note).clone()));
         new_notes.for_each(|note| tell(format!("note: {note}")));
+        let checkpoint = args.checkpoint.as_deref().map(|path| file_at_frame(path, frame));
         let target = Target {
             outputs: frame_maker.outputs_at(frame),
-            checkpoint: args.checkpoint.as_deref().map(|path| file_at_frame(path, frame)),
-            checkpoint_every: args.checkpoint_every,
-            resume: args.resume,
+            checkpoint: open_checkpoint(checkpoint.as_deref(), args.checkpoint_every, args.resume)?,
             exposure,
             progress: args.progress,
             frame: Some(FramePosition { frame, position, count: frames.count() }),
@@ -76,10 +77,18 @@ pub fn run(args: &Args, input: Input, frames: Frames) -> miette::Result<Done> {
 }
 
 /// Refuses files that cannot be made, and checkpoints that are not to be gone on from.
-fn check_files(args: &Args, outputs: &[Output], frames: &Frames) -> miette::Result<()> {
-    let first: Vec<Output> = outputs.iter().map(|output| output.at_frame(frames.first())).collect();
-    let checkpoint = args.checkpoint.as_deref().map(|path| file_at_frame(path, frames.first()));
-    check_writable(first.iter().map(Output::path).chain(checkpoint.as_deref()))?;
+fn check_files(args: &Args, input: &Input, outputs: &[Output], frames: &Frames) -> miette::Result<()> {
+    let patterns: Vec<&Path> = outputs.iter().map(Output::path).chain(args.checkpoint.as_deref()).collect();
+    let mut folders = HashSet::new();
+    for frame in frames.iter() {
+        let files: Vec<PathBuf> = patterns.iter().map(|path| file_at_frame(path, frame)).collect();
+        let files = || files.iter().map(PathBuf::as_path);
+        // Folders may depend on the frame, and one that cannot be written to is better found before the first.
+        if files().any(|file| folders.insert(file.parent().map(Path::to_owned))) {
+            check_writable(files())?;
+            check_no_input(files(), input)?;
+        }
+    }
     let Some(checkpoint) = args.checkpoint.as_deref().filter(|_| !args.resume) else { return Ok(()) };
     match frames.iter().map(|frame| file_at_frame(checkpoint, frame)).find(|path| path.exists()) {
         Some(path) => Err(miette!(
@@ -89,6 +98,9 @@ fn check_files(args: &Args, outputs: &[Output], frames: &Frames) -> miette::Resu
         None => Ok(()),
     }
 }
+
+/// A frame that is being prepared.
+type Preparation = JoinHandle<Result<Prepared, SessionError>>;
 
 /// Makes the scenes of frames ready.
 struct FrameMaker {
@@ -100,9 +112,10 @@ struct FrameMaker {
 
 impl FrameMaker {
     /// Begins to prepare a frame on a thread of its own.
-    fn begin(self: &Arc<Self>, frame: u32) -> (u32, JoinHandle<Result<Prepared, SessionError>>) {
+    fn begin(self: &Arc<Self>, frame: u32) -> miette::Result<(u32, Preparation)> {
         let maker = Arc::clone(self);
-        (frame, std::thread::spawn(move || maker.prepare(frame)))
+        let thread = std::thread::Builder::new().spawn(move || maker.prepare(frame));
+        Ok((frame, thread.map_err(|error| miette!("--frames: no thread for the next frame: {error}"))?))
     }
 
     fn prepare(&self, frame: u32) -> Result<Prepared, SessionError> {

@@ -1,6 +1,6 @@
 //! One picture, on its own or as a frame of an animation: rendered, saved every now and then, and written.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -18,12 +18,8 @@ use crate::terminal::tell;
 pub struct Target {
     /// Files for the picture.
     pub outputs: Vec<Output>,
-    /// A file for the sums.
-    pub checkpoint: Option<PathBuf>,
-    /// How often the sums are saved.
-    pub checkpoint_every: Duration,
-    /// Whether to go on from them.
-    pub resume: bool,
+    /// A file for the sums; the job goes on from it if it is there.
+    pub checkpoint: Option<Checkpoint>,
     /// Stops by which a `.png` is brightened.
     pub exposure: f32,
     /// How progress is reported.
@@ -32,59 +28,72 @@ pub struct Target {
     pub frame: Option<FramePosition>,
 }
 
+/// The checkpoint at `path`, if one is asked for: one that is there has to be gone on from.
+pub fn open_checkpoint(
+    path: Option<&Path>,
+    every: Duration,
+    resume: bool,
+) -> miette::Result<Option<Checkpoint>> {
+    let Some(path) = path else { return Ok(None) };
+    let checkpoint = Checkpoint::open(path, every)?;
+    if path.exists() && !resume {
+        return Err(miette!(
+            "{}: exists already; add --resume to go on from it, or name another file",
+            path.display()
+        ));
+    }
+    Ok(Some(checkpoint))
+}
+
 impl Target {
-    /// Renders until the plan is fulfilled or Ctrl-C is pressed, and writes the picture.
+    /// Renders until the plan is fulfilled or a signal comes, and writes the picture.
     ///
     /// A frame that was interrupted is only saved to its checkpoint: a sequence has whole pictures or none. The checkpoint
     /// of a whole frame is of no more use, and goes.
-    pub fn render(self, mut job: Job, plan: &Plan, control: &Arc<Control>) -> miette::Result<Done> {
-        let mut checkpoint = self.open_checkpoint(&mut job)?;
-        let plan = match checkpoint {
-            Some(_) => plan.clone().with_passes_up_to(self.checkpoint_every),
+    pub fn render(mut self, mut job: Job, plan: &Plan, control: &Arc<Control>) -> miette::Result<Done> {
+        let mut checkpoint = self.checkpoint.take();
+        if let Some(checkpoint) = checkpoint.as_ref().filter(|checkpoint| checkpoint.path().exists()) {
+            job.resume(checkpoint.path())?;
+        }
+        let plan = match &checkpoint {
+            Some(checkpoint) => plan.clone().with_passes_up_to(checkpoint.every()),
             None => plan.clone(),
         };
-        let end = self.render_passes(&mut job, &plan, control, checkpoint.as_mut())?;
+        let end = self.render_passes(&mut job, &plan, control, checkpoint.as_mut());
         let pictures = job.pictures();
-        let interrupted = matches!(end, Done::Interrupted);
+        let is_whole = matches!(end, Ok(Done::All));
         if pictures.iter().any(|picture| picture.film.mean_sample_count() == 0.0) {
             tell("interrupted before all was rendered once; nothing is written");
-            return Ok(end);
+            return end;
         }
-        let saved = match &mut checkpoint {
-            Some(checkpoint) if self.frame.is_none() || interrupted => checkpoint.save(&pictures[0]),
+        let is_frame_whole = self.frame.is_some() && is_whole;
+        let mut saved = match &mut checkpoint {
+            Some(checkpoint) if !is_frame_whole => checkpoint.save(&pictures[0]),
             _ => Ok(()),
         };
-        if let Some(frame) = self.frame.filter(|_| interrupted) {
+        if let Some(frame) = self.frame.filter(|_| !is_whole) {
             saved.into_diagnostic()?;
             tell(match &checkpoint {
                 Some(checkpoint) => format!("interrupted: {frame} is in {}", checkpoint.path().display()),
                 None => format!("interrupted: nothing of {frame} is written"),
             });
-            return Ok(end);
+            return end;
         }
-        write_all(&self.outputs, pictures, self.exposure)?;
+        if let Err(error) = write_all(&self.outputs, pictures, self.exposure) {
+            if let (Some(checkpoint), true) = (&mut checkpoint, is_frame_whole) {
+                saved = checkpoint.save(&pictures[0]);
+            }
+            let kept = checkpoint.filter(|_| saved.is_ok());
+            rescue(pictures, kept.as_ref().map(Checkpoint::path));
+            return Err(error.into());
+        }
         saved.into_diagnostic()?;
         if let (Some(checkpoint), Some(_)) = (&checkpoint, self.frame) {
             // It may never have been written.
             let _ = std::fs::remove_file(checkpoint.path());
         }
-        self.report(pictures, interrupted);
-        Ok(end)
-    }
-
-    /// The checkpoint that is asked for; the job goes on from it if it is there.
-    fn open_checkpoint(&self, job: &mut Job) -> miette::Result<Option<Checkpoint>> {
-        let Some(path) = &self.checkpoint else { return Ok(None) };
-        if path.exists() {
-            if !self.resume {
-                return Err(miette!(
-                    "{}: exists already; add --resume to go on from it, or name another file",
-                    path.display()
-                ));
-            }
-            job.resume(path)?;
-        }
-        Ok(Some(Checkpoint::new(path, self.checkpoint_every)))
+        self.report(pictures, !is_whole);
+        end
     }
 
     fn render_passes(
@@ -97,13 +106,21 @@ impl Target {
         control.samples.store(0, Ordering::Relaxed);
         let progress =
             Progress::start(self.progress, job.pixels(), plan.spp(), Arc::clone(control), self.frame);
+        let mut is_failing = false;
         let outcome = job.run(plan, control, |pictures| {
             progress.pass_done(&pictures[0].film);
-            if let Some(checkpoint) = &mut checkpoint {
-                // The next may go well, and the picture itself is not lost.
-                if let Err(error) = checkpoint.save_if_due(&pictures[0]) {
-                    tell(format!("note: no checkpoint: {error}"));
+            let saved = checkpoint.as_mut().and_then(|checkpoint| checkpoint.save_if_due(&pictures[0]));
+            // The next may go well, and the picture itself is not lost: to stop would help nobody.
+            match saved {
+                Some(Err(error)) if !is_failing => {
+                    tell(format!("note: no checkpoint for now: {error}"));
+                    is_failing = true;
                 }
+                Some(Ok(())) if is_failing => {
+                    tell("note: checkpoints are written again");
+                    is_failing = false;
+                }
+                _ => {}
             }
         });
         progress.finish();
@@ -137,5 +154,25 @@ impl Target {
         for output in &self.outputs {
             tell(format!("wrote {}", output.path().display()));
         }
+    }
+}
+
+/// After a failure to write the picture: tells where its sums are, which goes on from `checkpoint`, or else are put into the
+/// folder of temporary files, so that hours of rendering do not hang on one full disk.
+fn rescue(pictures: &[Accumulation], checkpoint: Option<&Path>) {
+    if let Some(path) = checkpoint {
+        return tell(format!(
+            "note: what was rendered is in {}; --resume goes on from it, and `tyndall merge` makes a picture of it",
+            path.display()
+        ));
+    }
+    // An .acc file holds one film.
+    let [picture] = pictures else { return };
+    let path = std::env::temp_dir().join(format!("tyndall-rescued-{}.acc", std::process::id()));
+    if picture.write(&path).is_ok() {
+        tell(format!(
+            "note: what was rendered is in {}; `tyndall merge` makes a picture of it",
+            path.display()
+        ));
     }
 }

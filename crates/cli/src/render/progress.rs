@@ -100,11 +100,12 @@ impl Progress {
             error: Mutex::new(None),
             finished: AtomicBool::new(false),
         });
+        // A system that has no thread for it costs the reports, not the picture.
         let thread = (style != ProgressStyle::None).then(|| {
             let shared = Arc::clone(&shared);
-            std::thread::spawn(move || shared.report())
+            std::thread::Builder::new().spawn(move || shared.report()).ok()
         });
-        Progress { shared, thread }
+        Progress { shared, thread: thread.flatten() }
     }
 
     /// Takes the error of the film after a pass.

@@ -64,13 +64,17 @@ fn lab(rgb: [f64; 3]) -> [f64; 3] {
     ];
     let [x, y, z] = XYZ.map(|row| {
         let t = row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2];
-        if t > (6.0f64 / 29.0).powi(3) { t.cbrt() } else { t * (29.0f64 / 6.0).powi(2) / 3.0 + 4.0 / 29.0 }
+        if t > (6.0f64 / 29.0).powi(3) {
+            libm::cbrt(t)
+        } else {
+            t * (29.0f64 / 6.0).powi(2) / 3.0 + 4.0 / 29.0
+        }
     });
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
 fn hyab(p: [f64; 3], q: [f64; 3]) -> f64 {
-    (p[0] - q[0]).abs() + (p[1] - q[1]).hypot(p[2] - q[2])
+    (p[0] - q[0]).abs() + libm::hypot(p[1] - q[1], p[2] - q[2])
 }
 
 #[cfg(test)]

@@ -8,6 +8,8 @@ use std::path::Path;
 use exr::block::reader::ChunksReader;
 use exr::prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers, Text};
 
+use tyndall_machine::{files, memory};
+
 use crate::error::FileError;
 
 /// A linear picture.
@@ -52,7 +54,8 @@ impl Picture {
             }
             error => refuse(format!("cannot be read as OpenEXR: {error}")),
         };
-        let length = std::fs::metadata(path).map_err(|e| FileError::io(path, e))?.len();
+        let length =
+            files::open(path).and_then(|file| file.metadata()).map_err(|e| FileError::io(path, e))?.len();
         let meta = MetaData::read_from_file(path, false).map_err(damaged)?;
         let promised: u64 = meta.headers.iter().map(|h| pixel_bytes(h.layer_size, &h.channels)).sum();
         let block = meta.headers.iter().map(|header| header.max_block_byte_size() as u64).max().unwrap_or(0);
@@ -61,6 +64,9 @@ impl Picture {
                 "promises {promised} bytes of pixels, more than its {length} can hold"
             )));
         }
+        // As stored, as numbers, and as colours with their errors.
+        memory::ask(promised.saturating_mul(3), || format!("3 x {promised} bytes of pixels"))
+            .map_err(|error| FileError::io(path, error.into()))?;
         if promised > LARGE + 2 * length {
             unpack_once(path).map_err(damaged)?;
         }

@@ -53,14 +53,14 @@ fn channel_difference(
     // Pixels are rounded to 24 bits: a difference below that is none, even where no noise is.
     let brightness = pixels.iter().map(|&i| value(a, i).abs().max(value(b, i).abs())).sum::<f64>() / n;
     let rounding = brightness * f64::from(f32::EPSILON);
-    Estimate { mean, standard_error: variance_of_mean.sqrt().hypot(rounding) }
+    Estimate { mean, standard_error: libm::hypot(variance_of_mean.sqrt(), rounding) }
 }
 
 /// Probability that a standard normal number is beyond ±z; by the continued fraction of Mills' ratio (Laplace),
 /// Q(z) = φ(z) / (z + 1/(z + 2/(z + 3/(z + …)))), which has converged to 1e-9 from z = 2 up.
 pub fn two_sided_tail(z: f64) -> f64 {
     let fraction = (1..=200).rev().fold(z, |tail, k| z + f64::from(k) / tail);
-    2.0 * (-0.5 * z * z).exp() / ((2.0 * std::f64::consts::PI).sqrt() * fraction)
+    2.0 * libm::exp(-0.5 * z * z) / ((2.0 * std::f64::consts::PI).sqrt() * fraction)
 }
 
 /// The z beyond which both tails together hold `probability`, which must be below 0.04; by bisection.

@@ -9,16 +9,18 @@
 
 use std::cell::Cell;
 use std::collections::HashMap;
-use std::fs::{self, File};
+use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use roxmltree::{Node, ParsingOptions};
+use tyndall_machine::files;
 
 use super::elements::{self, Value};
 use super::object::{Class, Object, Place, Property};
 use super::text::excerpt;
+use crate::include_chain::include_chain;
 use crate::{ImportError, Notes};
 
 /// Greatest depth of includes, as in Mitsuba.
@@ -55,6 +57,7 @@ impl Document {
             parameters: Vec::new(),
             ids: HashMap::new(),
             references: Vec::new(),
+            open: vec![path.canonicalize().unwrap_or_else(|_| path.to_path_buf())],
             files: 0,
             bytes: 0,
             properties: 0,
@@ -110,6 +113,8 @@ struct Reader<'a> {
     ids: HashMap<String, usize>,
     /// Properties that are references: object, property, id.
     references: Vec<(usize, usize, String)>,
+    /// The files that are being read, the innermost last.
+    open: Vec<PathBuf>,
     files: usize,
     bytes: u64,
     properties: usize,
@@ -178,7 +183,7 @@ impl Reader<'_> {
     fn text(&mut self, path: &Path) -> Result<String, ImportError> {
         self.files += 1;
         let mut bytes = Vec::new();
-        let file = File::open(path).map_err(|error| ImportError::unreadable(path, &error))?;
+        let file = files::open(path).map_err(|error| ImportError::unreadable(path, &error))?;
         let rest = BYTES.saturating_sub(self.bytes);
         let read = file.take(rest + 1).read_to_end(&mut bytes);
         read.map_err(|error| ImportError::unreadable(path, &error))?;
@@ -268,7 +273,15 @@ impl Reader<'_> {
                     return Err(place.error(message));
                 }
                 let path = self.document.find(&name, &place)?;
-                self.file(&path, Some(parent), source.depth + 1)
+                if let Some(chain) = include_chain(&self.open, &path) {
+                    return Err(
+                        place.error(format!("{chain}: the file includes itself; take one <include> out"))
+                    );
+                }
+                self.open.push(path.clone());
+                self.file(&path, Some(parent), source.depth + 1)?;
+                self.open.pop();
+                Ok(())
             }
             _ => {
                 let name = self.name(node, source)?;
@@ -406,7 +419,9 @@ impl Reader<'_> {
         if size.is_ok_and(|size| size > 1 << 24) {
             return Err(ImportError::of(&path, "is too large for a spectrum"));
         }
-        let text = fs::read_to_string(&path).map_err(|error| ImportError::unreadable(&path, &error))?;
+        let text = files::open(&path)
+            .and_then(|file| std::io::read_to_string(file.take(1 << 24)))
+            .map_err(|error| ImportError::unreadable(&path, &error))?;
         super::text::spectrum_file(&text).map_err(|message| ImportError::of(&path, message))
     }
 }

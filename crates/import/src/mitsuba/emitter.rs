@@ -161,5 +161,5 @@ impl<'a> Importer<'a> {
 fn about_y(turn: DMat3) -> Option<f64> {
     let is_about_y = turn.y_axis.distance(DVec3::Y) < 1e-12 && turn.determinant() > 0.0;
     // The rotation takes +z to (sin, 0, cos).
-    is_about_y.then(|| plain(turn.z_axis.x).atan2(turn.z_axis.z).to_degrees())
+    is_about_y.then(|| libm::atan2(plain(turn.z_axis.x), turn.z_axis.z).to_degrees())
 }

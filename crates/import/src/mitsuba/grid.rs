@@ -5,11 +5,11 @@
 //! outermost centres to the faces of the box, half a cell, the outermost values go on (`clamp`). In Tyndall they would fall
 //! towards 0 there; so a grid whose outermost values are not 0 gets a layer of the same around it.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::{DAffine3, DVec3};
+use tyndall_machine::files;
 use tyndall_volumes::{Grid, GridValues, LEAF_VOXELS, Lookup, ReadRequest, Tree, read, read_bytes};
 
 use super::boundaries::Extent;
@@ -50,7 +50,7 @@ impl GridFile {
     pub fn read(path: &Path, uses_box: bool) -> Result<Self, ImportError> {
         let unreadable = |error| ImportError::unreadable(path, &error);
         let mut header = [0; HEADER];
-        let mut file = File::open(path).map_err(unreadable)?;
+        let mut file = files::open(path).map_err(unreadable)?;
         let length = file.read(&mut header).map_err(unreadable)?;
         if length < HEADER || !header.starts_with(MAGIC) {
             return Err(ImportError::of(path, "is no grid volume of Mitsuba, version 3"));
@@ -69,7 +69,7 @@ impl GridFile {
         } else {
             // The box is without meaning, but Tyndall's own reader asks for one.
             corners = [DVec3::ZERO, DVec3::ONE];
-            let mut bytes = std::fs::read(path).map_err(unreadable)?;
+            let mut bytes = files::read(path).map_err(unreadable)?;
             for (at, value) in [0.0_f32, 0.0, 0.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
                 bytes[24 + 4 * at..28 + 4 * at].copy_from_slice(&value.to_le_bytes());
             }

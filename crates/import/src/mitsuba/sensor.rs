@@ -79,7 +79,7 @@ impl<'a> Importer<'a> {
             camera.vertical_fov = match (object.text("fov_axis")?, object.float_if_given("fov")?) {
                 // As it is written.
                 (Some("y"), Some(fov)) => fov,
-                _ => 2.0 * half[1].atan().to_degrees(),
+                _ => 2.0 * libm::atan(half[1]).to_degrees(),
             };
         }
         if object.plugin == "thinlens" {
@@ -101,7 +101,7 @@ impl<'a> Importer<'a> {
 
     /// Tangent of half the angle between the left and the right edge.
     fn tan_of_half_fov(&mut self, object: &'a Object, aspect: f64) -> Result<f64, ImportError> {
-        let across = |degrees: f64| (0.5 * degrees.to_radians()).tan();
+        let across = |degrees: f64| libm::tan(0.5 * degrees.to_radians());
         let diagonal = |tan: f64| tan / (1.0 + 1.0 / (aspect * aspect)).sqrt();
         let tan = match object.float_if_given("fov")? {
             Some(fov) if !(fov > 0.0 && fov < 180.0) => 0.0,
@@ -122,7 +122,7 @@ impl<'a> Importer<'a> {
                 let length = super::text::number(text.trim_end_matches("mm"));
                 let length = length.map_err(|message| object.place.error(message))?;
                 // Along the diagonal of a film of 36 mm by 24 mm.
-                diagonal(36.0_f64.hypot(24.0) / (2.0 * length))
+                diagonal(libm::hypot(36.0, 24.0) / (2.0 * length))
             }
         };
         if !(tan > 0.0 && tan.is_finite() && tan < 1e6) {

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
+use tyndall_scene::angle_between;
 use tyndall_scene::surface::read_mesh;
 
 use crate::{ImportError, Mesh, Sidecar};
@@ -44,7 +45,7 @@ fn normals(positions: &[DVec3], triangles: &[[u32; 3]], joins: bool) -> Vec<DVec
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
         for at in 0..3 {
             let edges = [1, 2].map(|step| corners[(at + step) % 3] - corners[at]);
-            sums[triangle[at] as usize] += normal * edges[0].angle_between(edges[1]);
+            sums[triangle[at] as usize] += normal * angle_between(edges[0], edges[1]);
         }
     }
     if joins {

@@ -103,7 +103,7 @@ fn rotation(axis: DVec3, degrees: f64) -> DAffine3 {
     let (sin, cos) = if quarters.fract() == 0.0 {
         [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][quarters.rem_euclid(4.0) as usize % 4]
     } else {
-        degrees.to_radians().sin_cos()
+        libm::sincos(degrees.to_radians())
     };
     // Rodrigues' formula.
     let turn = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));

@@ -126,7 +126,7 @@ pub(super) fn camera(
     }
     let fov = parameters.float_or("fov", 90.0)?;
     let half_width = match projection {
-        Projection::Perspective if fov > 0.0 && fov < 180.0 => (fov.to_radians() / 2.0).tan() / scale[2],
+        Projection::Perspective if fov > 0.0 && fov < 180.0 => libm::tan(fov.to_radians() / 2.0) / scale[2],
         Projection::Perspective => return Err(place.error("`fov` must be above 0 and below 180 degrees")),
         Projection::Orthographic => 1.0,
     };
@@ -169,7 +169,7 @@ fn say_plainly(camera: &mut CameraDescription, [left, right, bottom, top]: [f64;
     }
     camera.window = None;
     match camera.projection {
-        Projection::Perspective => camera.vertical_fov = plain(2.0 * top.atan().to_degrees()),
+        Projection::Perspective => camera.vertical_fov = plain(2.0 * libm::atan(top).to_degrees()),
         Projection::Orthographic => camera.height = Some(2.0 * top),
     }
 }

@@ -1,9 +1,10 @@
 //! The files of a scene, one within another by `Include` and `Import`.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use tyndall_machine::{files, memory};
 
 use super::context::Context;
 use super::directives::Directive;
@@ -12,6 +13,7 @@ use super::state::State;
 use super::tokens::Tokens;
 use super::world::World;
 use crate::ImportError;
+use crate::include_chain::include_chain;
 use crate::packed::unpacked;
 
 /// Files within files.
@@ -55,11 +57,11 @@ impl Files<'_> {
             None => ImportError::of(path, message),
         };
         let shown = path.display();
-        let bytes = self.content(path).map_err(|error| refuse(format!("{shown} cannot be read: {error}")))?;
         let key = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-        if self.open.contains(&key) {
-            return Err(refuse(format!("{shown} includes itself: take the `Include` out")));
+        if let Some(chain) = include_chain(&self.open, &key) {
+            return Err(refuse(format!("{chain}: the file includes itself; take one `Include` out")));
         }
+        let bytes = self.content(path).map_err(|error| refuse(format!("{shown} cannot be read: {error}")))?;
         self.count += 1;
         self.bytes += bytes.len() as u64;
         if self.open.len() == DEEPEST || self.count > MOST_FILES || self.bytes > MOST_BYTES {
@@ -89,7 +91,9 @@ impl Files<'_> {
 
     fn content(&self, path: &Path) -> std::io::Result<Vec<u8>> {
         let left = MOST_BYTES + 1 - self.bytes;
-        let mut file = File::open(path)?;
+        let mut file = files::open(path)?;
+        let length = file.metadata()?.len();
+        memory::ask(length, || format!("the {length} bytes of the file"))?;
         let mut bytes = Vec::new();
         (&mut file).take(left).read_to_end(&mut bytes)?;
         if bytes.starts_with(&[0x1f, 0x8b]) {

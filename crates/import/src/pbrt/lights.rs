@@ -134,7 +134,7 @@ impl Lamp<'_> {
         }
         let inner_angle = inner_angle.max(0.0);
         let power = parameters.float("power")?.filter(|power| *power > 0.0);
-        let [cos_end, cos_start] = [angle, inner_angle].map(|angle| angle.to_radians().cos());
+        let [cos_end, cos_start] = [angle, inner_angle].map(|angle| libm::cos(angle.to_radians()));
         let solid_angle = 2.0 * PI * ((1.0 - cos_start) + (cos_start - cos_end) / 2.0);
         let scale = self.scale * power.map_or(1.0, |power| power / solid_angle);
         let intensity = spectra::light(parameters.colour("I"), scale, self.context)?;

@@ -5,9 +5,9 @@
 //! out are put into the world; all else keeps its transform.
 
 use std::f64::consts::PI;
-use std::fs::File;
 
 use glam::DVec3;
+use tyndall_machine::files;
 use tyndall_scene::description::{
     CylinderShape, DiscShape, MeshShape, RectangleShape, ShapeDescription, SphereShape,
 };
@@ -166,7 +166,7 @@ fn ply(shape: &Shape, context: &Context) -> Result<Geometry, ImportError> {
     let mut file = context.file(name, place)?;
     if file.ends_with(".gz") {
         let unreadable = |error: std::io::Error| place.error(format!("{file} cannot be read: {error}"));
-        let packed = File::open(&file).map_err(unreadable)?;
+        let packed = files::open(file.as_ref()).map_err(unreadable)?;
         let length = packed.metadata().map_err(unreadable)?.len();
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".ply.gz");
         let path = context.sidecar.write_copy(stem, "ply", &mut unpacked(packed, length))?;

@@ -4,10 +4,10 @@
 //! it, whatever else is a spectrum is brought to luminance 1 first, and then `scale` holds. Between its samples a
 //! spectrum is linear, and 0 beyond them.
 
-use std::fs::File;
 use std::io::Read;
 use std::sync::Arc;
 
+use tyndall_machine::files;
 use tyndall_optics::{Spectrum, cie};
 use tyndall_scene::description::{SpectrumDescription, SpectrumTable};
 
@@ -182,7 +182,7 @@ const GREATEST_FILE: u64 = 16 << 20;
 fn read_file(name: &str, parameter: &Parameter, context: &Context) -> Result<Vec<f64>, ImportError> {
     let path = context.path(name);
     let mut bytes = Vec::new();
-    File::open(&path).and_then(|file| file.take(GREATEST_FILE + 1).read_to_end(&mut bytes)).map_err(
+    files::open(&path).and_then(|file| file.take(GREATEST_FILE + 1).read_to_end(&mut bytes)).map_err(
         |error| {
             let message = format!("\"{name}\" is no spectrum known by name, and {}: {error}", path.display());
             parameter.error(&message)

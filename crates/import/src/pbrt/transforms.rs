@@ -17,7 +17,7 @@ pub(super) fn look_at(numbers: [f64; 9]) -> Option<DAffine3> {
 /// A rotation about an axis, by degrees. `None` if the axis is 0.
 pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     let axis = DVec3::new(x, y, z).try_normalize()?;
-    Some(DAffine3::from_axis_angle(axis, angle.to_radians()))
+    Some(DAffine3::from_mat3(tyndall_scene::rotation(axis, angle.to_radians())))
 }
 
 /// Sixteen numbers column by column. `None` if they are no affine map.

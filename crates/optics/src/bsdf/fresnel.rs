@@ -31,7 +31,7 @@ pub fn conductor(cos: f64, n: f64, k: f64) -> f64 {
     let (cos_squared, sin_squared) = (cos * cos, 1.0 - cos * cos);
     // The root of x + iy in the form that does not cancel.
     let (x, y) = (n * n - k * k - sin_squared, 2.0 * n * k);
-    let length = x.hypot(y);
+    let length = libm::hypot(x, y);
     let (a, b) = if x >= 0.0 {
         let a = (0.5 * (length + x)).sqrt();
         (a, if a > 0.0 { 0.5 * y / a } else { 0.0 })

@@ -74,7 +74,7 @@ impl Ggx {
         let stretched = (w * scale).normalize();
         let z = (1.0 - u[1]) * (1.0 + stretched.z) - stretched.z;
         let sin = (1.0 - z * z).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = (TAU * u[0]).sin_cos();
+        let (sin_phi, cos_phi) = libm::sincos(TAU * u[0]);
         let h = DVec3::new(sin * cos_phi, sin * sin_phi, z) + stretched;
         (h * scale).normalize_or(DVec3::Z)
     }

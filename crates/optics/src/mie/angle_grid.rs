@@ -18,7 +18,7 @@ const STEPS: [f64; 3] = [12.0, 8.0, 6.0];
 pub(super) fn forward_angles(x: f64, sigma: f64) -> Vec<f64> {
     let ring = (PI / x / STEPS[0]).min(LONGEST);
     let blurred = sigma.clamp(0.0, 0.4) / STEPS[1];
-    let bow = (x.powf(-2.0 / 3.0) / STEPS[2]).clamp(0.001, LONGEST).max(ring);
+    let bow = (libm::pow(x, -2.0 / 3.0) / STEPS[2]).clamp(0.001, LONGEST).max(ring);
     let step = |angle: f64| if sigma > 0.0 { (blurred * angle).clamp(ring, bow) } else { ring };
     let stretch = (2.0 * count(&step) / MOST_ANGLES).max(1.0);
 

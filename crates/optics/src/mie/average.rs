@@ -116,7 +116,7 @@ impl MieAverage {
     /// Rows of cos θ, from 1 to −1, and the phase function there, as tables of phase functions take them.
     pub fn rows(&self) -> Vec<(f64, f64)> {
         let mut rows: Vec<(f64, f64)> =
-            self.angles.iter().map(|a| a.cos()).zip(self.values.iter().copied()).collect();
+            self.angles.iter().map(|a| libm::cos(*a)).zip(self.values.iter().copied()).collect();
         // Angles so close that their cosines are the same number.
         rows.dedup_by_key(|row| row.0);
         rows
@@ -162,7 +162,7 @@ impl MieAverage {
 }
 
 fn cosines(angles: &[f64]) -> Vec<f64> {
-    angles.iter().map(|angle| angle.cos()).collect()
+    angles.iter().map(|angle| libm::cos(*angle)).collect()
 }
 
 /// All radii of a grid, or, with a `stride` of 2, those that are not in a grid of half as many steps.

@@ -157,7 +157,7 @@ fn decode(bytes: &[u8], key: &[u8; 32]) -> Option<MieAverage> {
 
 fn read(path: &Path) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
-    fs::File::open(path).ok()?.take(GREATEST_FILE).read_to_end(&mut bytes).ok()?;
+    tyndall_machine::files::open(path).ok()?.take(GREATEST_FILE).read_to_end(&mut bytes).ok()?;
     Some(bytes)
 }
 

@@ -27,9 +27,9 @@ impl<'a> RadiusGrid<'a> {
     pub(super) fn node(&self, i: usize, steps: usize) -> (f64, f64) {
         let [low, high] = self.ends;
         let u = low + (high - low) * i as f64 / steps as f64;
-        let log_r = self.middle + self.width * u.sinh();
+        let log_r = self.middle + self.width * libm::sinh(u);
         let relative = self.distribution.log_density(log_r) - self.distribution.log_density(self.middle);
         let end = if i == 0 || i == steps { 0.5 } else { 1.0 };
-        (log_r.exp(), end * relative.exp() * u.cosh() / steps as f64)
+        (libm::exp(log_r), end * libm::exp(relative) * libm::cosh(u) / steps as f64)
     }
 }

@@ -29,8 +29,8 @@ pub(super) fn ratios(z: Complex64, last: usize) -> Vec<Complex64> {
 pub(super) fn psi(x: f64, last: usize) -> Vec<f64> {
     let ratios = ratios(Complex64::new(x, 0.0), last);
     let mut psi = Vec::with_capacity(last + 1);
-    psi.push(x.sin());
-    let mut before = x.cos();
+    psi.push(libm::sin(x));
+    let mut before = libm::cos(x);
     for n in 1..=last {
         let (order, now) = (n as f64, psi[n - 1]);
         let next = if order <= x { (2.0 * order - 1.0) / x * now - before } else { ratios[n].re * now };
@@ -43,8 +43,8 @@ pub(super) fn psi(x: f64, last: usize) -> Vec<f64> {
 /// χₙ(x) for n = 0 … `last`.
 pub(super) fn chi(x: f64, last: usize) -> Vec<f64> {
     let mut chi = Vec::with_capacity(last + 1);
-    chi.push(x.cos());
-    let mut before = -x.sin();
+    chi.push(libm::cos(x));
+    let mut before = -libm::sin(x);
     for n in 1..=last {
         let now = chi[n - 1];
         chi.push((2 * n - 1) as f64 / x * now - before);
@@ -56,5 +56,5 @@ pub(super) fn chi(x: f64, last: usize) -> Vec<f64> {
 /// From where to go down: beyond z the error of a start with 0 falls as exp(−4/3 t^{3/2}) with t = (n − z)/(z/2)^{1/3},
 /// which at 8 z^{1/3} is below the last digit.
 fn first_order(size: f64, last: usize) -> usize {
-    last.max((size + 8.0 * size.cbrt()) as usize) + 15
+    last.max((size + 8.0 * libm::cbrt(size)) as usize) + 15
 }

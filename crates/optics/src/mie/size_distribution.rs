@@ -112,10 +112,14 @@ impl SizeDistribution {
     pub(super) fn log_density(&self, log_r: f64) -> f64 {
         match self.law {
             SizeLaw::Single { .. } => 0.0,
-            SizeLaw::Gamma { r_eff, v_eff } => (1.0 / v_eff - 2.0) * log_r - log_r.exp() / (r_eff * v_eff),
-            SizeLaw::LogNormal { r_g, sigma_g } => -0.5 * ((log_r - r_g.ln()) / sigma_g.ln()).powi(2),
+            SizeLaw::Gamma { r_eff, v_eff } => {
+                (1.0 / v_eff - 2.0) * log_r - libm::exp(log_r) / (r_eff * v_eff)
+            }
+            SizeLaw::LogNormal { r_g, sigma_g } => {
+                -0.5 * ((log_r - libm::log(r_g)) / libm::log(sigma_g)).powi(2)
+            }
             SizeLaw::ModifiedGamma { r_mode, alpha, gamma } => {
-                (alpha + 1.0) * log_r - alpha / gamma * (gamma * (log_r - r_mode.ln())).exp()
+                (alpha + 1.0) * log_r - alpha / gamma * libm::exp(gamma * (log_r - libm::log(r_mode)))
             }
             SizeLaw::PowerLaw { exponent } => (1.0 - exponent) * log_r,
         }
@@ -124,7 +128,7 @@ impl SizeDistribution {
     /// ln r between which all particles are that matter. Those that are left out are few by area (small ones) and by r⁴,
     /// the weight in the forward direction (great ones). Nothing lies between if the limits cut all of them off.
     pub(super) fn log_range(&self) -> [f64; 2] {
-        let limits = [self.r_min.ln(), self.r_max.ln()];
+        let limits = [libm::log(self.r_min), libm::log(self.r_max)];
         if let SizeLaw::PowerLaw { .. } = self.law {
             return limits;
         }
@@ -135,7 +139,7 @@ impl SizeDistribution {
     /// its maximum. A power law has no such place; all of it is alike.
     pub(super) fn log_peak(&self) -> [f64; 2] {
         let [low, high] = match self.law {
-            SizeLaw::PowerLaw { .. } => [self.r_min.ln(), self.r_max.ln()],
+            SizeLaw::PowerLaw { .. } => [libm::log(self.r_min), libm::log(self.r_max)],
             _ => [self.edge(3.0, -1.0, -0.5), self.edge(3.0, 1.0, -0.5)],
         };
         [0.5 * (low + high), 0.5 * (high - low)]

@@ -173,7 +173,7 @@ pub(super) fn check_sphere(m: RefractiveIndex, x: f64) -> Result<(), MieError> {
     if m.n == 1.0 && m.k == 0.0 {
         return Err(MieError::NoContrast);
     }
-    let m = m.n.hypot(m.k);
+    let m = libm::hypot(m.n, m.k);
     if m * x > GREATEST_INNER_SIZE { Err(MieError::InnerSize { m, x }) } else { Ok(()) }
 }
 
@@ -183,5 +183,5 @@ const LANES: usize = 4;
 /// Beyond x + 4.05 x^{1/3} terms the rest is below 1e-14 of Qext (Wiscombe 1980, eq. 8). Some more, since amplitudes far
 /// from forward fall only with the root of that, and more slowly where a sharp resonance lies beyond.
 fn number_of_terms(x: f64) -> usize {
-    (x + 5.0 * x.cbrt()) as usize + 8
+    (x + 5.0 * libm::cbrt(x)) as usize + 8
 }

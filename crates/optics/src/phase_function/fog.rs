@@ -25,35 +25,36 @@ pub struct FogFit {
 impl FogFit {
     /// The fit for droplets of `d` µm in diameter, above 0 and at most [`GREATEST_FOG_DIAMETER_UM`].
     pub fn new(d: f64) -> FogFit {
-        let l = d.ln();
+        let l = libm::log(d);
         if d <= 0.1 {
             FogFit {
                 g_hg: 13.8 * d * d,
-                g_draine: 1.1456 * d * (9.29044 * d).sin(),
+                g_draine: 1.1456 * d * libm::sin(9.29044 * d),
                 alpha: 250.0,
-                weight_draine: 0.252977 - 312.983 * d.powf(4.3),
+                weight_draine: 0.252977 - 312.983 * libm::pow(d, 4.3),
             }
         } else if d < 1.5 {
             let inner = (l - 0.238604) * (l + 1.00667) / (0.507522 - 0.15677 * l);
             FogFit {
                 g_hg: 0.862 - 0.143 * l * l,
-                g_draine: 0.379685 * (1.19692 * inner.cos() + 1.37932 * l + 0.0625835).cos() + 0.344213,
+                g_draine: 0.379685 * libm::cos(1.19692 * libm::cos(inner) + 1.37932 * l + 0.0625835)
+                    + 0.344213,
                 alpha: 250.0,
-                weight_draine: 0.146209 * (3.38707 * l + 2.11193).cos() + 0.316072 + 0.0778917 * l,
+                weight_draine: 0.146209 * libm::cos(3.38707 * l + 2.11193) + 0.316072 + 0.0778917 * l,
             }
         } else if d < 5.0 {
             FogFit {
-                g_hg: 0.0604931 * l.ln() + 0.940256,
-                g_draine: 0.500411 - 0.081287 / (-2.0 * l + l.tan() + 1.27551),
+                g_hg: 0.0604931 * libm::log(l) + 0.940256,
+                g_draine: 0.500411 - 0.081287 / (-2.0 * l + libm::tan(l) + 1.27551),
                 alpha: 7.30354 * l + 6.31675,
-                weight_draine: 0.026914 * (l - (5.68947 * (l.ln() - 0.0292149)).cos()) + 0.376475,
+                weight_draine: 0.026914 * (l - libm::cos(5.68947 * (libm::log(l) - 0.0292149))) + 0.376475,
             }
         } else {
             FogFit {
-                g_hg: (-0.0990567 / (d - 1.67154)).exp(),
-                g_draine: (-2.20679 / (d + 3.91029) - 0.428934).exp(),
-                alpha: (3.62489 - 8.29288 / (d + 5.52825)).exp(),
-                weight_draine: (-0.599085 / (d - 0.641583) - 0.665888).exp(),
+                g_hg: libm::exp(-0.0990567 / (d - 1.67154)),
+                g_draine: libm::exp(-2.20679 / (d + 3.91029) - 0.428934),
+                alpha: libm::exp(3.62489 - 8.29288 / (d + 5.52825)),
+                weight_draine: libm::exp(-0.599085 / (d - 0.641583) - 0.665888),
             }
         }
     }

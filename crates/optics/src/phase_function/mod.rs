@@ -113,7 +113,7 @@ impl PhaseFunction {
         }
         let cos_theta = self.sample_cosine(u[0]);
         let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = (TAU * u[1]).sin_cos();
+        let (sin_phi, cos_phi) = libm::sincos(TAU * u[1]);
         let (tangent, bitangent) = before.any_orthonormal_pair();
         (tangent * (sin_theta * cos_phi) + bitangent * (sin_theta * sin_phi) + before * cos_theta).normalize()
     }

@@ -78,7 +78,7 @@ impl Sggx {
     pub(super) fn sample(&self, before: DVec3, u: [f64; 2]) -> DVec3 {
         let toward = self.stretch(-before).normalize();
         let (cos, sin) = (u[0].sqrt(), (1.0 - u[0]).sqrt());
-        let (sin_phi, cos_phi) = (TAU * u[1]).sin_cos();
+        let (sin_phi, cos_phi) = libm::sincos(TAU * u[1]);
         let (tangent, bitangent) = toward.any_orthonormal_pair();
         let of_sphere = tangent * (sin * cos_phi) + bitangent * (sin * sin_phi) + toward * cos;
         let h = self.stretch(of_sphere).normalize();
@@ -99,7 +99,7 @@ impl Sggx {
         let mean = if x.abs() < 1e-2 {
             (0..10).map(|n| (-x).powi(n) / f64::from(n + 2)).sum::<f64>()
         } else {
-            (1.0 - x.ln_1p() / x) / x
+            (1.0 - libm::log1p(x) / x) / x
         };
         1.0 - 2.0 * (1.0 + x) * mean
     }
@@ -114,7 +114,7 @@ impl Sggx {
         let ring = |cos: f64| {
             let sin = (1.0 - cos * cos).max(0.0).sqrt();
             let squared = (0..AZIMUTHS).map(|i| {
-                let (sin_phi, cos_phi) = (TAU * (i as f64 + 0.5) / AZIMUTHS as f64).sin_cos();
+                let (sin_phi, cos_phi) = libm::sincos(TAU * (i as f64 + 0.5) / AZIMUTHS as f64);
                 let n = tangent * (sin * cos_phi) + bitangent * (sin * sin_phi) + toward * cos;
                 self.stretch(n).normalize().dot(before).powi(2)
             });

@@ -9,10 +9,11 @@
 //! Values have any normalisation.
 
 use std::fmt;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
+
+use tyndall_machine::files;
 
 use super::{PhaseFunction, SpectralPhase, TabulatedPhase};
 
@@ -46,7 +47,7 @@ fn refuse<T>(line: Option<usize>, message: impl Into<String>) -> Result<T, Phase
 /// Reads the table of a file; errors do not repeat its name.
 pub fn read_phase_table(path: &Path) -> Result<SpectralPhase, PhaseTableError> {
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(GREATEST_FILE + 1).read_to_end(&mut bytes));
+    let read = files::open(path).and_then(|file| file.take(GREATEST_FILE + 1).read_to_end(&mut bytes));
     if let Err(error) = read {
         let message = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file; mend the name".into(),

@@ -81,7 +81,7 @@ impl TabulatedPhase {
         }
         // cos 180° is −1 to the last digit, cos 90° is 0 only nearly, which does no harm.
         let rows: Vec<(f64, f64)> =
-            rows.iter().map(|(angle, value)| (angle.to_radians().cos(), *value)).collect();
+            rows.iter().map(|(angle, value)| (libm::cos(angle.to_radians()), *value)).collect();
         TabulatedPhase::from_cosines(&rows)
     }
 

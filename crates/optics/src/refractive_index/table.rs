@@ -100,7 +100,7 @@ impl RefractiveIndexTable {
         let part = (wavelength - short) / (long - short);
         let between = |a: f64, b: f64| a + part * (b - a);
         let k = match (low.k, high.k) {
-            (a, b) if a > 0.0 && b > 0.0 => between(a.ln(), b.ln()).exp(),
+            (a, b) if a > 0.0 && b > 0.0 => libm::exp(between(libm::log(a), libm::log(b))),
             (a, b) => between(a, b),
         };
         Some(RefractiveIndex { n: between(low.n, high.n), k })

@@ -72,7 +72,8 @@ def render(
     `scene` is a `Scene`, or what one is made of: a dictionary, a file's name, or a `Volume`, for which a scene is made up.
 
     The render ends after `spp` samples of each pixel (those the scene asks for, 64 unless it does), or when the median relative
-    standard error of the pixels is below `error` (such as `0.01` or `"1%"`), or after `time` seconds, whichever of those given
+    standard error of the pixels is below `error` (such as `0.01` or `"1%"`) and no more light than that is known to be unseen by
+    most of them (`Render.unseen_light`), or after `time` seconds, whichever of those given
     comes first; `samples=(a, b)` makes only these samples, to be merged with others. `threads` are as many as there are cores;
     the picture does not depend on them.
 

@@ -140,6 +140,10 @@ class Accumulation:
     @property
     def median_error(self) -> float | None:
         """Median over the pixels of standard error over mean of luminance."""
+    def error_against(self, asked: float) -> float | None:
+        """The error to be held against one that is asked for: the median error, or the bound of what most pixels have not seen
+        yet, as a share of their light, if that is more than was asked for.
+        """
     @property
     def nbytes(self) -> int:
         """Memory that it takes, at most."""
@@ -184,6 +188,11 @@ class Render:
     @property
     def median_error(self) -> float | None:
         """Median over the pixels with medium of standard error over mean; `None` if the picture is black."""
+    @property
+    def unseen_light(self) -> float | None:
+        """The light that most pixels have not seen yet, as a share of what they show, at most, as far as the picture knows; `None`
+        if it is black.
+        """
     @property
     def warnings(self) -> list[str]:
         """What has to be told along with the picture, where its stated errors do not hold; one line each."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from collections.abc import Mapping
 from os import PathLike
 from time import perf_counter
@@ -146,6 +147,9 @@ def meters(
     """
     effort = effort_of(samples, error, time, seed, threads)
     answer = json.loads(_tyndall.meters(as_scene(scene), effort))["meters"]
+    for name, reading in answer.items():
+        for warning in reading.get("warnings", []):
+            warnings.warn(f"{name}: {warning}", stacklevel=2)
     return {name: _reading(reading) for name, reading in answer.items()}
 
 

@@ -213,7 +213,7 @@ fn extinction(summary: &VolumeSummary) -> f64 {
     } else {
         [summary.mean, summary.max].into_iter().find(is_usable).unwrap_or(1.0)
     };
-    let mu_t = OPTICAL_THICKNESS / (mean * middle_edge(summary) * fraction.cbrt());
+    let mu_t = OPTICAL_THICKNESS / (mean * middle_edge(summary) * libm::cbrt(fraction));
     round_to(mu_t.clamp(1e-25, 1e25), 1e-3 * mu_t.clamp(1e-25, 1e25))
 }
 
@@ -225,7 +225,7 @@ fn framing_camera([min, max]: [DVec3; 2], aspect: f64) -> CameraDescription {
     let forward = -toward_viewer;
     let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
     let up = right.cross(forward);
-    let tan_vertical = (0.5 * VERTICAL_FOV.to_radians()).tan() * FILLED;
+    let tan_vertical = libm::tan(0.5 * VERTICAL_FOV.to_radians()) * FILLED;
     let tan_horizontal = tan_vertical * aspect;
 
     let mut distance = 0.0_f64;
@@ -257,7 +257,7 @@ fn framing_camera([min, max]: [DVec3; 2], aspect: f64) -> CameraDescription {
 
 /// Rounds to decimals as a person would write them, off by at most `step`.
 fn round_to(value: f64, step: f64) -> f64 {
-    let digits = -step.log10().floor();
+    let digits = -libm::log10(step).floor();
     if !(-300.0..300.0).contains(&digits) {
         return value;
     }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rgb::{Rgb, fraction};
 use super::spectrum::SpectrumDescription;
+use crate::rotation;
 
 /// A light.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -225,7 +226,7 @@ impl ImageLightDescription {
         let y = (given.y_axis - x * x.dot(given.y_axis)).normalize_or(x.any_orthonormal_vector());
         let z = x.cross(y);
         let z = if given.determinant() < 0.0 { -z } else { z };
-        DMat3::from_rotation_y(self.rotation.to_radians()) * DMat3::from_cols(x, y, z)
+        rotation(DVec3::Y, self.rotation.to_radians()) * DMat3::from_cols(x, y, z)
     }
 
     /// What is wrong with the orientation, if anything.
@@ -254,7 +255,7 @@ impl SkyDescription {
 /// The unit vector at an elevation above the horizon and an azimuth from north (-z) through east (+x),
 /// degrees.
 pub(super) fn direction_of_compass(elevation: f64, azimuth: f64) -> DVec3 {
-    let (sin_elevation, cos_elevation) = elevation.to_radians().sin_cos();
-    let (sin_azimuth, cos_azimuth) = azimuth.to_radians().sin_cos();
+    let (sin_elevation, cos_elevation) = libm::sincos(elevation.to_radians());
+    let (sin_azimuth, cos_azimuth) = libm::sincos(azimuth.to_radians());
     DVec3::new(cos_elevation * sin_azimuth, sin_elevation, -cos_elevation * cos_azimuth)
 }

@@ -60,7 +60,7 @@ fn layer(found: &mut Findings, meter: &LayerMeterDescription) {
         _ => {}
     }
     for [theta, _] in &meter.radiance {
-        if !(0.0..=180.0).contains(theta) || theta.to_radians().cos().abs() < LEAST_COSINE {
+        if !(0.0..=180.0).contains(theta) || libm::cos(theta.to_radians()).abs() < LEAST_COSINE {
             let message = format!(
                 "`radiance` has theta = {theta}: write [theta, phi] with theta from 0 to 180 degrees, but not 90, where light \
                  leaves by no face"

@@ -328,7 +328,7 @@ fn sky(found: &mut Findings, sky: &SkyDescription) {
             found.report(key, format!("the sky has both `{key}` and `toward_sun`: keep one"));
         }
     }
-    if sky.toward_sun().y < (-6.1_f64).to_radians().sin() {
+    if sky.toward_sun().y < libm::sin((-6.1_f64).to_radians()) {
         found
             .report("toward_sun", "the sun is more than 6 degrees below the horizon, where the sky is night");
     }

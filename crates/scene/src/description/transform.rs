@@ -4,6 +4,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
+use crate::rotation;
+
 /// A linear map of the volume's own world space (for a file: after the file's transform) into the scene.
 ///
 /// A point is scaled, then rotated about x, then y, then z, then translated; or `matrix` says it all.
@@ -33,7 +35,7 @@ impl TransformDescription {
             };
         }
         let [x, y, z] = self.rotate.unwrap_or_default().map(f64::to_radians);
-        let rotation = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+        let rotation = rotation(DVec3::Z, z) * rotation(DVec3::Y, y) * rotation(DVec3::X, x);
         let scale = match self.scale {
             None => DVec3::ONE,
             Some(Scale::Uniform(factor)) => DVec3::splat(factor),

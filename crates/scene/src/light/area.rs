@@ -243,7 +243,7 @@ impl ConeOfSphere {
     fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
         let below_axis = u[1] * self.one_minus_cos;
         let sin_squared = below_axis * (2.0 - below_axis);
-        let (sin_azimuth, cos_azimuth) = (TAU * u[0]).sin_cos();
+        let (sin_azimuth, cos_azimuth) = libm::sincos(TAU * u[0]);
         let (first, second) = self.axis.any_orthonormal_pair();
         let sideways = (first * cos_azimuth + second * sin_azimuth) * sin_squared.sqrt();
         let half_chord = (self.radius * self.radius - self.distance * self.distance * sin_squared).max(0.0);

@@ -21,7 +21,7 @@ impl ConstantLight {
     pub(super) fn sample(&self, u: [f64; 2]) -> LightSample {
         let y = 1.0 - 2.0 * u[1];
         let horizontal = (1.0 - y * y).max(0.0).sqrt();
-        let (sin_azimuth, cos_azimuth) = (TAU * u[0]).sin_cos();
+        let (sin_azimuth, cos_azimuth) = libm::sincos(TAU * u[0]);
         LightSample {
             toward: DVec3::new(horizontal * cos_azimuth, y, horizontal * sin_azimuth),
             distance: f64::INFINITY,

@@ -11,9 +11,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use super::{AreaLight, Light};
+use crate::{angle_between, rotation};
 
 /// Bounds of the emission of a group of lights.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,13 +64,13 @@ impl EmissionBounds {
     /// The bounds of both groups.
     pub(super) fn union(&self, other: &Self) -> Self {
         let (wide, narrow) = if self.spread >= other.spread { (self, other) } else { (other, self) };
-        let apart = wide.axis.angle_between(narrow.axis);
+        let apart = angle_between(wide.axis, narrow.axis);
         let (mut axis, mut spread) = (wide.axis, wide.spread);
         if (apart + narrow.spread).min(PI) > wide.spread {
             spread = 0.5 * (wide.spread + apart + narrow.spread);
             let around = wide.axis.cross(narrow.axis).try_normalize();
             let around = around.unwrap_or_else(|| wide.axis.any_orthonormal_vector());
-            axis = DQuat::from_axis_angle(around, spread - wide.spread) * wide.axis;
+            axis = rotation(around, spread - wide.spread) * wide.axis;
         }
         Self {
             min: self.min.min(other.min),
@@ -91,9 +92,9 @@ impl EmissionBounds {
         if distance_squared <= radius_squared || distance_squared == 0.0 || self.spread >= PI {
             return nearness;
         }
-        let seen_under = (radius_squared / distance_squared).sqrt().asin();
-        let away = (self.axis.angle_between(offset) - self.spread - seen_under).max(0.0);
-        if away > self.reach + MARGIN { 0.0 } else { nearness * away.cos().max(LEAST_COS) }
+        let seen_under = libm::asin((radius_squared / distance_squared).sqrt());
+        let away = (angle_between(self.axis, offset) - self.spread - seen_under).max(0.0);
+        if away > self.reach + MARGIN { 0.0 } else { nearness * libm::cos(away).max(LEAST_COS) }
     }
 
     /// What splits of a group are judged by: power, extent, and the solid angle shone into.
@@ -101,11 +102,12 @@ impl EmissionBounds {
         let extent = self.max - self.min;
         let area = extent.x * extent.y + extent.y * extent.z + extent.z * extent.x + extent.length_squared();
         let widest = (self.spread + self.reach).min(PI);
-        let (sin, cos) = self.spread.sin_cos();
+        let (sin, cos) = libm::sincos(self.spread);
         // 2π ∫ sin θ max(0, cos(θ − θo)) dθ, the inside of the cone at full weight.
         let orientation = 2.0 * PI * (1.0 - cos)
             + FRAC_PI_2
-                * (2.0 * widest * sin - (self.spread - 2.0 * widest).cos() - 2.0 * self.spread * sin + cos);
+                * (2.0 * widest * sin - libm::cos(self.spread - 2.0 * widest) - 2.0 * self.spread * sin
+                    + cos);
         self.power * area * orientation
     }
 }
@@ -120,5 +122,5 @@ fn cone_of_normals(lamp: &AreaLight) -> Option<(DVec3, f64)> {
     }
     let axis = sum.try_normalize()?;
     let least_cos = pieces().filter_map(normal).fold(1.0_f64, |least, normal| least.min(axis.dot(normal)));
-    Some((axis, least_cos.clamp(-1.0, 1.0).acos() + MARGIN))
+    Some((axis, libm::acos(least_cos.clamp(-1.0, 1.0)) + MARGIN))
 }

@@ -20,7 +20,7 @@ pub fn equal_area_to_direction(u: f64, v: f64) -> DVec3 {
     let r = 1.0 - fold.abs();
     let azimuth = if r > 0.0 { FRAC_PI_4 * ((b.abs() - a.abs()) / r + 1.0) } else { 0.0 };
     let across = r * (2.0 - r * r).max(0.0).sqrt();
-    let (sin, cos) = azimuth.sin_cos();
+    let (sin, cos) = libm::sincos(azimuth);
     DVec3::new((across * cos).copysign(a), (across * sin).copysign(b), (1.0 - r * r).copysign(fold))
 }
 
@@ -30,7 +30,7 @@ pub fn direction_to_equal_area(direction: DVec3) -> [f64; 2] {
     // r = √(1 − |z|), without cancellation near the poles.
     let r = ((x * x + y * y) / (1.0 + z)).sqrt().min(1.0);
     // |b| in the half about +z; |a| + |b| is r there.
-    let b = if x > 0.0 || y > 0.0 { r * y.atan2(x) / (2.0 * FRAC_PI_4) } else { 0.0 };
+    let b = if x > 0.0 || y > 0.0 { r * libm::atan2(y, x) / (2.0 * FRAC_PI_4) } else { 0.0 };
     let a = r - b;
     let (a, b) = if direction.z < 0.0 { (1.0 - b, 1.0 - a) } else { (a, b) };
     [a.copysign(direction.x), b.copysign(direction.y)].map(|at| (0.5 * (at + 1.0)).clamp(0.0, 1.0))

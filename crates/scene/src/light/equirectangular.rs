@@ -10,16 +10,16 @@ use glam::DVec3;
 
 /// The unit vector of a place in the picture.
 pub fn uv_to_direction(u: f64, v: f64) -> DVec3 {
-    let (sin_polar, cos_polar) = (PI * v).sin_cos();
-    let (sin_azimuth, cos_azimuth) = (TAU * (u - 0.5)).sin_cos();
+    let (sin_polar, cos_polar) = libm::sincos(PI * v);
+    let (sin_azimuth, cos_azimuth) = libm::sincos(TAU * (u - 0.5));
     DVec3::new(sin_polar * sin_azimuth, cos_polar, -sin_polar * cos_azimuth)
 }
 
 /// The place (u, v) of a direction, each in [0, 1].
 pub fn direction_to_uv(direction: DVec3) -> [f64; 2] {
-    let azimuth = direction.x.atan2(-direction.z);
+    let azimuth = libm::atan2(direction.x, -direction.z);
     // Near the poles an arc cosine of y would lose half the digits.
-    let polar = direction.x.hypot(direction.z).atan2(direction.y);
+    let polar = libm::atan2(libm::hypot(direction.x, direction.z), direction.y);
     [0.5 + azimuth / TAU, polar / PI]
 }
 

@@ -159,7 +159,7 @@ impl ImageLight {
     /// The surroundings of the equirectangular `image`, times `scale`, turned by `rotation` degrees about +y
     /// (right-handed).
     pub fn new(image: LightImage, filter: ImageFilter, scale: f64, rotation: f64) -> Self {
-        let orientation = DMat3::from_rotation_y(rotation.to_radians());
+        let orientation = crate::rotation(DVec3::Y, rotation.to_radians());
         Self::mapped(image, ImageMapping::Equirectangular, filter, scale, orientation)
     }
 
@@ -220,10 +220,10 @@ impl ImageLight {
         let v = match self.mapping {
             ImageMapping::EqualArea => (chosen.row as f64 + chosen.inside[1]) / height as f64,
             ImageMapping::Equirectangular => {
-                let edge = |row: usize| (PI * row as f64 / height as f64).cos();
+                let edge = |row: usize| libm::cos(PI * row as f64 / height as f64);
                 let [top, bottom] = [chosen.row, chosen.row + 1].map(edge);
                 let cos_polar = top + (bottom - top) * chosen.inside[1];
-                cos_polar.clamp(-1.0, 1.0).acos() / PI
+                libm::acos(cos_polar.clamp(-1.0, 1.0)) / PI
             }
         };
         let u = (chosen.column as f64 + chosen.inside[0]) / width as f64;
@@ -287,7 +287,7 @@ fn cell_solid_angle(mapping: ImageMapping, width: usize, height: usize, row: usi
         ImageMapping::Equirectangular => {
             let half_step = 0.5 * PI / height as f64;
             let middle = PI * (row as f64 + 0.5) / height as f64;
-            2.0 * PI / width as f64 * 2.0 * middle.sin() * half_step.sin()
+            2.0 * PI / width as f64 * 2.0 * libm::sin(middle) * libm::sin(half_step)
         }
     }
 }

@@ -10,9 +10,13 @@ use std::path::Path;
 use exr::block::reader::ChunksReader;
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::ImageDecoder;
+use tyndall_machine::{files, memory};
 
 use super::image::LightImage;
 use crate::error::SceneError;
+
+/// What a texel takes while it is read: as the file has it, and as three f32.
+const TEXEL_BYTES: u64 = 24;
 
 /// Texels of the largest picture that is read, 12 bytes each in memory.
 const GREATEST_TEXELS: u64 = 1 << 28;
@@ -29,7 +33,7 @@ const LARGE: u64 = 16 << 20;
 /// Reads a picture; with a warning if it had NaN, negative or infinite values, which are mended.
 pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), SceneError> {
     let refuse = |message: String| SceneError::file(path, message.replace('\n', " "));
-    let mut file = BufReader::new(File::open(path).map_err(|error| refuse(error.to_string()))?);
+    let mut file = BufReader::new(files::open(path).map_err(|error| refuse(error.to_string()))?);
     let length = file.get_ref().metadata().map_err(|error| refuse(error.to_string()))?.len();
     let mut magic = Vec::new();
     file.by_ref().take(4).read_to_end(&mut magic).map_err(|error| refuse(error.to_string()))?;
@@ -140,7 +144,10 @@ pub(crate) fn read_hdr(file: BufReader<File>, length: u64) -> Result<Texels, Str
 /// Refuses pictures that are too large.
 pub(crate) fn check_size(width: u64, height: u64) -> Result<(), String> {
     match width.checked_mul(height) {
-        Some(texels) if texels <= GREATEST_TEXELS => Ok(()),
+        Some(texels) if texels <= GREATEST_TEXELS => {
+            memory::ask(texels.saturating_mul(TEXEL_BYTES), || format!("{width} x {height} texels"))
+                .map_err(|error| error.to_string())
+        }
         _ => Err(format!("has {width} x {height} texels; more than 268 million are not read: scale it down")),
     }
 }

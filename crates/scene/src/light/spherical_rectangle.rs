@@ -92,7 +92,7 @@ impl Rectangle {
         let right_angles = sum_of_angles(inner_angle(lower, right), inner_angle(right, upper));
         let left_angles = sum_of_angles(inner_angle(upper, left), inner_angle(left, lower));
         let [cos, sin] = sum_of_angles(right_angles, left_angles);
-        let excess = sin.atan2(cos);
+        let excess = libm::atan2(sin, cos);
         let solid_angle = if excess < -LEAST_SOLID_ANGLE { excess + TAU } else { excess };
         (solid_angle > LEAST_SOLID_ANGLE).then_some(SphericalRectangle {
             from,
@@ -118,7 +118,7 @@ impl SphericalRectangle {
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         // The part of the rectangle to the left of the x sought has the solid angle u₀ Ω; its inner angles at the cut fill
         // up `phi` to 2π.
-        let (sin, cos) = (u[0] * self.solid_angle).sin_cos();
+        let (sin, cos) = libm::sincos(u[0] * self.solid_angle);
         let [cos, sin] = sum_of_angles([cos, sin], [self.left[0], -self.left[1]]);
         let f = (cos * self.lower - self.upper) / sin;
         let cut = (1.0 / length(f, self.lower)).copysign(f).clamp(-1.0, 1.0);

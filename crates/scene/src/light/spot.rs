@@ -14,6 +14,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::{LightSample, PointLight};
+use crate::angle_between;
 use crate::description::SpotFalloff;
 
 /// A point that shines into a cone.
@@ -66,7 +67,7 @@ impl SpotLight {
 
     /// Power per solid angle that is sent along the unit vector `direction`.
     pub fn intensity(&self, direction: DVec3) -> DVec3 {
-        self.intensity * self.diminution(self.axis.angle_between(direction))
+        self.intensity * self.diminution(angle_between(self.axis, direction))
     }
 
     /// What is left of the intensity on the axis at this angle from it.
@@ -80,8 +81,8 @@ impl SpotLight {
         match self.falloff {
             SpotFalloff::Linear => (self.edge - angle) / (self.edge - self.inner),
             SpotFalloff::Smooth => {
-                let cos_edge = self.edge.cos();
-                let x = ((angle.cos() - cos_edge) / (self.inner.cos() - cos_edge)).clamp(0.0, 1.0);
+                let cos_edge = libm::cos(self.edge);
+                let x = ((libm::cos(angle) - cos_edge) / (libm::cos(self.inner) - cos_edge)).clamp(0.0, 1.0);
                 x * x * (3.0 - 2.0 * x)
             }
         }
@@ -89,7 +90,7 @@ impl SpotLight {
 
     pub(super) fn sample(&self, from: DVec3) -> LightSample {
         let sample = PointLight::new(self.position, self.intensity).sample(from);
-        let diminution = self.diminution(self.axis.angle_between(-sample.toward));
+        let diminution = self.diminution(angle_between(self.axis, -sample.toward));
         LightSample { radiance_over_pdf: sample.radiance_over_pdf * diminution, ..sample }
     }
 
@@ -97,8 +98,10 @@ impl SpotLight {
     pub(super) fn power(&self) -> DVec3 {
         let (inner, edge) = (self.inner, self.edge);
         let mean_cos = match self.falloff {
-            SpotFalloff::Linear if edge - inner > 1e-6 => (edge.sin() - inner.sin()) / (edge - inner),
-            _ => 0.5 * (inner.cos() + edge.cos()),
+            SpotFalloff::Linear if edge - inner > 1e-6 => {
+                (libm::sin(edge) - libm::sin(inner)) / (edge - inner)
+            }
+            _ => 0.5 * (libm::cos(inner) + libm::cos(edge)),
         };
         TAU * self.intensity * (1.0 - mean_cos)
     }

@@ -33,8 +33,8 @@ impl SunLight {
             toward,
             across: [first, second],
             irradiance,
-            radiance: irradiance / (PI * half_angle.sin().powi(2)),
-            one_minus_cos: 2.0 * (0.5 * half_angle).sin().powi(2),
+            radiance: irradiance / (PI * libm::sin(half_angle).powi(2)),
+            one_minus_cos: 2.0 * libm::sin(0.5 * half_angle).powi(2),
         }
     }
 
@@ -60,7 +60,7 @@ impl SunLight {
     pub(super) fn sample(&self, u: [f64; 2]) -> LightSample {
         let below_axis = u[1] * self.one_minus_cos;
         let sin = (below_axis * (2.0 - below_axis)).sqrt();
-        let (sin_azimuth, cos_azimuth) = (TAU * u[0]).sin_cos();
+        let (sin_azimuth, cos_azimuth) = libm::sincos(TAU * u[0]);
         let sideways = self.across[0] * (sin * cos_azimuth) + self.across[1] * (sin * sin_azimuth);
         LightSample {
             toward: self.toward * (1.0 - below_axis) + sideways,

@@ -235,7 +235,7 @@ impl Cells {
 
     /// The probability of all cells up to and with each, and ∫ S dV in local units; None if all are dark.
     fn probabilities(&self, volume: &Volume, local_to_world: &DAffine3) -> Option<(Vec<f64>, DVec3)> {
-        let along = ((LOOKUPS / self.len().max(1)) as f64).cbrt().clamp(1.0, 6.0) as usize;
+        let along = libm::cbrt((LOOKUPS / self.len().max(1)) as f64).clamp(1.0, 6.0) as usize;
         let emitted = |number: usize| {
             let [min, max] = self.bounds(number);
             let step = (max - min) / along as f64;
@@ -277,8 +277,8 @@ fn share(cumulative: &[f64], number: usize) -> (f64, f64) {
 fn uniform_in_ball(u: [f64; 3]) -> DVec3 {
     let z = 1.0 - 2.0 * u[1];
     let across = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = (2.0 * PI * u[2]).sin_cos();
-    DVec3::new(across * cos, across * sin, z) * u[0].cbrt()
+    let (sin, cos) = libm::sincos(2.0 * PI * u[2]);
+    DVec3::new(across * cos, across * sin, z) * libm::cbrt(u[0])
 }
 
 /// Light of red, green and blue that the volume sends out per length at a place in the world, without regard to directions:

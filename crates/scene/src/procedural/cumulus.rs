@@ -10,6 +10,7 @@
 use glam::{DAffine3, DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 use tyndall_lanes::Random;
+use tyndall_machine::memory::{MemoryError, ask_for};
 use tyndall_volumes::{Grid, GridClass, GridValues, LEAF_VOXELS, Leaf, Tree};
 
 use super::noise::fractal_noise;
@@ -23,16 +24,32 @@ const FRAY: f32 = 0.035;
 /// Generations of bubbles on bubbles.
 const GENERATIONS: u32 = 3;
 
+/// Memory of a leaf.
+const LEAF_BYTES: usize = size_of::<(Leaf, [f32; LEAF_VOXELS])>();
+
 /// A cumulus as a grid named `density` of `resolution`³ voxels in a cube of edge `size` about `center`; only leaves
 /// with some cloud in them are kept. The same arguments give the same cloud.
-pub fn cumulus(seed: u32, resolution: u32, center: DVec3, size: f64) -> Grid {
+///
+/// # Errors
+/// If there is no memory for it.
+pub fn cumulus(seed: u32, resolution: u32, center: DVec3, size: f64) -> Result<Grid, MemoryError> {
     let spheres = heap_of_spheres(seed);
     let leaves_along = resolution.div_ceil(8);
     let mut tree = Tree { background: 0.0, tiles: Vec::new(), leaves: Vec::new(), leaf_values: Vec::new() };
     let slabs: Vec<_> = (0..leaves_along)
         .into_par_iter()
-        .map(|x| slab_of_leaves(&spheres, x, leaves_along, resolution, seed))
-        .collect();
+        .map(|x| {
+            // How much of a slab is cloud shows when it is there.
+            let leaves = leaves_along as usize * leaves_along as usize;
+            ask_for(leaves, LEAF_BYTES, || {
+                format!("the {leaves} leaves of a slab of {resolution}\u{b3} voxels")
+            })?;
+            Ok(slab_of_leaves(&spheres, x, leaves_along, resolution, seed))
+        })
+        .collect::<Result<_, MemoryError>>()?;
+    let leaves: usize = slabs.iter().map(Vec::len).sum();
+    ask_for(leaves, LEAF_BYTES, || format!("{leaves} leaves of 512 voxels of 4 bytes"))?;
+    tree.leaf_values.reserve_exact(leaves * LEAF_VOXELS);
     for slab in slabs {
         for (leaf, values) in slab {
             tree.leaves.push(leaf);
@@ -41,7 +58,7 @@ pub fn cumulus(seed: u32, resolution: u32, center: DVec3, size: f64) -> Grid {
     }
     let voxel = size / f64::from(resolution);
     let corner = center - DVec3::splat(0.5 * size - 0.5 * voxel);
-    Grid {
+    Ok(Grid {
         name: "density".into(),
         class: GridClass::FogVolume,
         index_to_world: DAffine3::from_scale_rotation_translation(
@@ -53,7 +70,7 @@ pub fn cumulus(seed: u32, resolution: u32, center: DVec3, size: f64) -> Grid {
         codec: "computed".into(),
         metadata: Vec::new(),
         values: GridValues::Float(tree),
-    }
+    })
 }
 
 #[derive(Clone, Copy)]
@@ -74,9 +91,9 @@ fn heap_of_spheres(seed: u32) -> Vec<Sphere> {
         let radius = (0.17 - 0.085 * reach) * (0.8 + 0.4 * random.f32());
         let height = 0.22 * (1.0 - reach * reach) * (0.6 + 0.8 * random.f32());
         let centre = Vec3::new(
-            0.5 + 0.29 * reach * angle.cos(),
+            0.5 + 0.29 * reach * libm::cosf(angle),
             BASE + 0.06 + height,
-            0.5 + 0.22 * reach * angle.sin(),
+            0.5 + 0.22 * reach * libm::sinf(angle),
         );
         spheres.push(Sphere { centre: centre + jitter * 0.05, radius });
     }
@@ -98,7 +115,7 @@ fn heap_of_spheres(seed: u32) -> Vec<Sphere> {
 
 /// A random direction, more often up than down: bubbles rise.
 fn upward_direction(random: &mut Random) -> Vec3 {
-    let y = 1.0 - 1.6 * random.f32().powf(1.3);
+    let y = 1.0 - 1.6 * libm::powf(random.f32(), 1.3);
     let (sin, cos) = tyndall_lanes::sin_cos_turns(random.f32());
     let across = (1.0 - y * y).max(0.0).sqrt();
     Vec3::new(across * cos, y, across * sin)
@@ -192,15 +209,15 @@ mod tests {
 
     #[test]
     fn a_cloud_is_the_same_each_time_and_another_for_another_seed() {
-        let a = cumulus(1, 48, DVec3::ZERO, 2.0);
-        assert_eq!(tree(&a), tree(&cumulus(1, 48, DVec3::ZERO, 2.0)));
-        assert_ne!(tree(&a), tree(&cumulus(2, 48, DVec3::ZERO, 2.0)));
+        let a = cumulus(1, 48, DVec3::ZERO, 2.0).unwrap();
+        assert_eq!(tree(&a), tree(&cumulus(1, 48, DVec3::ZERO, 2.0).unwrap()));
+        assert_ne!(tree(&a), tree(&cumulus(2, 48, DVec3::ZERO, 2.0).unwrap()));
     }
 
     #[test]
     fn a_cloud_keeps_clear_of_its_cube_and_fills_a_fair_part_of_it() {
         for seed in 0..3 {
-            let grid = cumulus(seed, 64, DVec3::ZERO, 1.0);
+            let grid = cumulus(seed, 64, DVec3::ZERO, 1.0).unwrap();
             let tree = tree(&grid);
             let mut filled = 0;
             for (leaf, values) in tree.leaves.iter().zip(tree.leaf_values.chunks(LEAF_VOXELS)) {

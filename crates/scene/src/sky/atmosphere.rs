@@ -52,8 +52,8 @@ impl Amounts {
 /// Relative densities at a height in metres.
 pub(super) fn densities(height: f64) -> Amounts {
     Amounts {
-        molecules: (-height / MOLECULES_SCALE_HEIGHT).exp(),
-        dust: (-height / DUST_SCALE_HEIGHT).exp(),
+        molecules: libm::exp(-height / MOLECULES_SCALE_HEIGHT),
+        dust: libm::exp(-height / DUST_SCALE_HEIGHT),
         ozone: (1.0 - (height - 25_000.0).abs() / 15_000.0).max(0.0),
     }
 }
@@ -90,7 +90,7 @@ impl Atmosphere {
         const GREATEST_OZONE: f64 = 300.0 * 2.687e20 / 15_000.0;
         let mut atmosphere = Self {
             molecules: micrometres.map(molecules_at),
-            dust: micrometres.map(|lambda| dust_at_550 * (lambda / 0.55).powf(-DUST_ANGSTROM_EXPONENT)),
+            dust: micrometres.map(|lambda| dust_at_550 * libm::pow(lambda / 0.55, -DUST_ANGSTROM_EXPONENT)),
             ozone: OZONE_CROSS_SECTION.map(|cross_section| GREATEST_OZONE * 1e-25 * cross_section),
             columns: Vec::new(),
         };
@@ -117,7 +117,7 @@ impl Atmosphere {
             let thickness = self.molecules[i] * columns.molecules
                 + self.dust[i] * columns.dust
                 + self.ozone[i] * columns.ozone;
-            *value = (-thickness).exp();
+            *value = libm::exp(-thickness);
         }
         transmittance
     }

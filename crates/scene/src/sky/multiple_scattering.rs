@@ -68,7 +68,7 @@ impl MultipleScattering {
 }
 
 fn series(atmosphere: &Atmosphere, ground_albedo: &Spectrum, radius: f64, sun_zenith_angle: f64) -> Spectrum {
-    let (sin, cos) = sun_zenith_angle.sin_cos();
+    let (sin, cos) = libm::sincos(sun_zenith_angle);
     let toward_sun = DVec3::new(sin, cos, 0.0);
     let mut second_order = [0.0; COUNT];
     let mut returned = [0.0; COUNT];
@@ -77,7 +77,7 @@ fn series(atmosphere: &Atmosphere, ground_albedo: &Spectrum, radius: f64, sun_ze
         let y = 1.0 - 2.0 * (k as f64 + 0.5) / DIRECTIONS as f64;
         let azimuth = PI * (1.0 + 5.0_f64.sqrt()) * k as f64;
         let horizontal = (1.0 - y * y).sqrt();
-        let direction = DVec3::new(horizontal * azimuth.cos(), y, horizontal * azimuth.sin());
+        let direction = DVec3::new(horizontal * libm::cos(azimuth), y, horizontal * libm::sin(azimuth));
         add_line(atmosphere, ground_albedo, radius, toward_sun, direction, &mut second_order, &mut returned);
     }
     spectrum::each(|i| second_order[i] / DIRECTIONS as f64 / (1.0 - returned[i] / DIRECTIONS as f64))

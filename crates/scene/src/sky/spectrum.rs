@@ -76,7 +76,7 @@ fn colour_matching(wavelength: f64) -> DVec3 {
     // A Gaussian with different widths below and above its centre.
     let lobe = |height: f64, centre: f64, below: f64, above: f64| {
         let distance = (wavelength - centre) / if wavelength < centre { below } else { above };
-        height * (-0.5 * distance * distance).exp()
+        height * libm::exp(-0.5 * distance * distance)
     };
     DVec3::new(
         lobe(1.056, 599.8, 37.9, 31.0) + lobe(0.362, 442.0, 16.0, 26.7) + lobe(-0.065, 501.1, 20.4, 26.2),

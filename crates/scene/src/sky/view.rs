@@ -61,7 +61,7 @@ impl Sky {
         let to_rgb = ToRgb::new();
         let scaled = |spectrum: &Spectrum| to_rgb.convert(spectrum) * description.intensity;
         let sun_irradiance = scaled(&air.atmosphere.sun_transmittance(radius, toward_sun.y));
-        let horizon = -(EARTH_RADIUS / radius).min(1.0).acos();
+        let horizon = -libm::acos((EARTH_RADIUS / radius).min(1.0));
         let sky_irradiance = air.sky_irradiance();
         let sky =
             air.table(radius, ELEVATIONS_OF_SKY, |t| horizon + (FRAC_PI_2 - horizon) * t * t, None, scaled);
@@ -78,9 +78,9 @@ impl Sky {
 
     /// Radiance from a direction (unit vector), the sun's disc left out.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
-        let elevation = direction.y.clamp(-1.0, 1.0).asin();
+        let elevation = libm::asin(direction.y.clamp(-1.0, 1.0));
         let horizontal = DVec3::new(direction.x, 0.0, direction.z).normalize_or(self.sun_azimuth);
-        let azimuth = horizontal.dot(self.sun_azimuth).clamp(-1.0, 1.0).acos();
+        let azimuth = libm::acos(horizontal.dot(self.sun_azimuth).clamp(-1.0, 1.0));
 
         let (table, span) = if elevation >= self.horizon {
             (&self.sky, FRAC_PI_2 - self.horizon)
@@ -128,7 +128,7 @@ impl Air {
         let cos_zenith = description.toward_sun().y.clamp(-1.0, 1.0);
         let ground_albedo = spectrum::reflectance(description.ground_albedo.channels());
         let atmosphere = Atmosphere::new(description.turbidity);
-        let multiple = MultipleScattering::new(&atmosphere, &ground_albedo, cos_zenith.acos());
+        let multiple = MultipleScattering::new(&atmosphere, &ground_albedo, libm::acos(cos_zenith));
         let sun = DVec3::new((1.0 - cos_zenith * cos_zenith).sqrt(), cos_zenith, 0.0);
         Self { atmosphere, multiple, sun, ground_albedo }
     }
@@ -167,9 +167,9 @@ impl Air {
         sky_irradiance: Option<&Spectrum>,
         steps: usize,
     ) -> (Spectrum, Spectrum) {
-        let (sin_elevation, cos_elevation) = elevation.sin_cos();
+        let (sin_elevation, cos_elevation) = libm::sincos(elevation);
         let direction =
-            DVec3::new(cos_elevation * azimuth.cos(), sin_elevation, cos_elevation * azimuth.sin());
+            DVec3::new(cos_elevation * libm::cos(azimuth), sin_elevation, cos_elevation * libm::sin(azimuth));
         let origin = DVec3::new(0.0, radius, 0.0);
         let distance = match sky_irradiance {
             Some(_) => distance_to_ground(radius, sin_elevation),
@@ -187,11 +187,11 @@ impl Air {
             let coefficients = self.atmosphere.coefficients(densities(here - EARTH_RADIUS));
             let cos_sun = self.sun.dot(origin + direction * along) / here;
             let sun = self.atmosphere.sun_transmittance(here, cos_sun);
-            let multiple = self.multiple.radiance(here - EARTH_RADIUS, cos_sun.clamp(-1.0, 1.0).acos());
+            let multiple = self.multiple.radiance(here - EARTH_RADIUS, libm::acos(cos_sun.clamp(-1.0, 1.0)));
             for i in 0..COUNT {
                 let (molecules, dusts) =
                     (coefficients.molecular_scattering[i], coefficients.dust_scattering[i]);
-                let through = (-coefficients.extinction[i] * length).exp();
+                let through = libm::exp(-coefficients.extinction[i] * length);
                 // ∫ T dt over the step with its extinction constant.
                 let reached = transmittance[i] * (1.0 - through) / coefficients.extinction[i].max(1e-300);
                 radiance[i] +=
@@ -218,12 +218,13 @@ impl Air {
         let mut irradiance = [0.0; COUNT];
         for ring in 0..RINGS {
             // Rings of equal ∫ cos θ dω: uniform in sin² of the zenith angle.
-            let elevation = (1.0 - (ring as f64 + 0.5) / RINGS as f64).sqrt().asin();
+            let elevation = libm::asin((1.0 - (ring as f64 + 0.5) / RINGS as f64).sqrt());
             for sector in 0..SECTORS {
                 let azimuth = PI * (sector as f64 + 0.5) / SECTORS as f64;
                 let radius = EARTH_RADIUS + LEAST_ALTITUDE;
                 let (radiance, dust) = self.line_of_sight(radius, elevation, azimuth, None, STEPS / 2);
-                let cos_sun = elevation.cos() * azimuth.cos() * self.sun.x + elevation.sin() * self.sun.y;
+                let cos_sun = libm::cos(elevation) * libm::cos(azimuth) * self.sun.x
+                    + libm::sin(elevation) * self.sun.y;
                 let phase = dust_phase(cos_sun);
                 for i in 0..COUNT {
                     irradiance[i] += (radiance[i] + phase * dust[i]) * PI / (RINGS * SECTORS) as f64;

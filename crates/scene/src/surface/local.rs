@@ -54,6 +54,6 @@ pub(super) fn nearest_end(enter: (f64, u32), leave: (f64, u32), end: f64) -> Opt
 
 /// An angle about the z axis from +x towards +y, in turns from 0 to 1.
 pub(super) fn turn(x: f64, y: f64) -> f64 {
-    let turn = y.atan2(x) / std::f64::consts::TAU;
+    let turn = libm::atan2(y, x) / std::f64::consts::TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }

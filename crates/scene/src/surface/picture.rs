@@ -3,13 +3,13 @@
 //! What a file is shows in its first bytes, not in its name. Numbers of PNG and JPEG are sRGB-coded (IEC 61966-2-1) unless the
 //! scene says otherwise, those of the others linear. Bytes stay bytes in memory and are decoded when looked at.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 use glam::DVec3;
 use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder};
+use tyndall_machine::files;
 
 use crate::error::SceneError;
 use crate::light::image_file::{check_size, is_far_more, read_exr, read_hdr, unlikely};
@@ -84,7 +84,7 @@ impl Picture {
 
 fn read(path: &Path, srgb: Option<bool>) -> Result<Picture, String> {
     let io = |error: std::io::Error| error.to_string();
-    let mut file = BufReader::new(File::open(path).map_err(io)?);
+    let mut file = BufReader::new(files::open(path).map_err(io)?);
     let length = file.get_ref().metadata().map_err(io)?.len();
     let mut magic = Vec::new();
     file.by_ref().take(4).read_to_end(&mut magic).map_err(io)?;
@@ -176,5 +176,5 @@ fn sound(value: f32) -> f32 {
 }
 
 fn srgb_to_linear(value: f32) -> f32 {
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    if value <= 0.04045 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
 }

@@ -23,7 +23,7 @@ pub(super) fn point(ray: &Ray, t: f64) -> LocalPoint {
     let position = ray.at(t).normalize_or(DVec3::Z);
     let [x, y, z] = position.to_array();
     let tangent = if x == 0.0 && y == 0.0 { DVec3::X } else { DVec3::new(-y, x, 0.0) };
-    let uv = [turn(x, y), 1.0 - z.clamp(-1.0, 1.0).acos() / PI];
+    let uv = [turn(x, y), 1.0 - libm::acos(z.clamp(-1.0, 1.0)) / PI];
     LocalPoint { position, normal: position, shading_normal: None, tangent, uv }
 }
 

@@ -93,20 +93,20 @@ impl WorldPrimitive {
             Self::Sphere { center, radius, inward } => {
                 let z = 1.0 - 2.0 * u[1];
                 let across = (1.0 - z * z).max(0.0).sqrt();
-                let (sin, cos) = (TAU * u[0]).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * u[0]);
                 let outwards = DVec3::new(across * cos, across * sin, z);
                 SurfacePoint { position: center + outwards * radius, normal: facing(outwards, inward) }
             }
             Self::Disc { center, normal, radius, inner_radius } => {
                 let inner = inner_radius * inner_radius;
                 let distance = (inner + u[1] * (radius * radius - inner)).max(0.0).sqrt();
-                let (sin, cos) = (TAU * u[0]).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * u[0]);
                 let (first, second) = normal.any_orthonormal_pair();
                 SurfacePoint { position: center + (first * cos + second * sin) * distance, normal }
             }
             Self::Cylinder { from, to, radius, inward } => {
                 let (first, second) = (to - from).normalize_or(DVec3::Y).any_orthonormal_pair();
-                let (sin, cos) = (TAU * u[0]).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * u[0]);
                 let outwards = first * cos + second * sin;
                 let position = from + (to - from) * u[1] + outwards * radius;
                 SurfacePoint { position, normal: facing(outwards, inward) }

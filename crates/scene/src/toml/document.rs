@@ -5,6 +5,7 @@ use std::sync::{Arc, LazyLock};
 
 use miette::NamedSource;
 use toml::de::{DeTable, DeValue};
+use tyndall_machine::files;
 
 use super::conformance;
 use super::schema::json_schema;
@@ -36,14 +37,14 @@ impl SceneDocument {
     /// Reads a scene file.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let refuse = |error: std::io::Error| SceneError::file(path, error.to_string());
-        let length = std::fs::metadata(path).map_err(refuse)?.len();
+        let length = files::open(path).and_then(|file| file.metadata()).map_err(refuse)?.len();
         if length > GREATEST_FILE {
             return Err(SceneError::file(
                 path,
                 "more than 16 MiB of text is not a scene file; is it a volume?",
             ));
         }
-        let bytes = std::fs::read(path).map_err(refuse)?;
+        let bytes = files::read(path).map_err(refuse)?;
         let text = String::from_utf8(bytes)
             .map_err(|_| SceneError::file(path, "is not UTF-8 text, so it is not a TOML scene file"))?;
         let mut document = Self::parse(&path.display().to_string(), &text)?;

@@ -21,7 +21,7 @@ impl AlongRay<'_> {
             let integrand = |t: f64| {
                 let lookups = &mut Lookups::default();
                 let depth = tau + self.smooth_thickness(a, t, lookups);
-                self.mu_t(t, lookups) * (-depth).exp() * f(t)
+                self.mu_t(t, lookups) * libm::exp(-depth) * f(t)
             };
             sum += halved(&integrand, (a, b), gauss(&integrand, (a, b)), f64::abs(sum), MOST_HALVINGS);
             tau += self.smooth_thickness(a, b, &mut Lookups::default());

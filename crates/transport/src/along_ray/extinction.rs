@@ -62,7 +62,7 @@ impl<'a> Stretch<'a> {
             }
             Density::Atmosphere { bottom, scale_height, .. } => {
                 let mut extinction = Exponential::of_atmosphere(&local, *bottom, *scale_height);
-                extinction.logarithm += mu_t.ln();
+                extinction.logarithm += libm::log(mu_t);
                 Self::opaque_at_the_end(Profile::Exponential(extinction), range)
             }
         }
@@ -74,7 +74,7 @@ impl<'a> Stretch<'a> {
         let mut pieces = 1;
         if let Profile::Exponential(Exponential { logarithm, rate }) = profile {
             if rate > 0.0 {
-                end = end.min((logarithm - (rate * NEGLIGIBLE).ln()) / rate);
+                end = end.min((logarithm - libm::log(rate * NEGLIGIBLE)) / rate);
             }
             // Within a piece the extinction at most doubles.
             pieces = (rate.abs() * (end - start) / std::f64::consts::LN_2).ceil().clamp(1.0, 1e4) as u32;

@@ -46,8 +46,8 @@ impl Profile {
                     (None, b) => b.map_or(0.0, |b| b.1),
                 }
             }
-            Self::Gaussian { peak, centre, width } => peak * (-0.5 * ((t - centre) / width).powi(2)).exp(),
-            Self::Sine { mean, frequency } => mean * (1.0 + (TAU * frequency * t).sin()),
+            Self::Gaussian { peak, centre, width } => peak * libm::exp(-0.5 * ((t - centre) / width).powi(2)),
+            Self::Sine { mean, frequency } => mean * (1.0 + libm::sin(TAU * frequency * t)),
         }
     }
 
@@ -69,7 +69,7 @@ impl Profile {
             }
             Self::Sine { mean, frequency } => {
                 let turns = TAU * frequency;
-                mean * (b - a + ((turns * a).cos() - (turns * b).cos()) / turns)
+                mean * (b - a + (libm::cos(turns * a) - libm::cos(turns * b)) / turns)
             }
         }
     }
@@ -121,7 +121,7 @@ impl Profile {
 /// erf by its power series below 3, by its continued fraction above (Abramowitz & Stegun 1964, 7.1.6 and 7.1.14).
 fn error_function(x: f64) -> f64 {
     let size = x.abs();
-    let gaussian = (-size * size).exp() / PI.sqrt();
+    let gaussian = libm::exp(-size * size) / PI.sqrt();
     if size < 3.0 {
         let (mut term, mut sum, mut n) = (size, size, 0.0);
         while term > 1e-17 * sum {

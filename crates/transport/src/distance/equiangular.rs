@@ -36,7 +36,7 @@ pub(crate) struct Equiangular {
 impl Equiangular {
     /// None if the light is so near the ray that angles do not tell places on it.
     pub fn new(light: LightBeside, range: (f64, f64)) -> Option<Self> {
-        let angle = |t: f64| (t - light.nearest).atan2(light.distance);
+        let angle = |t: f64| libm::atan2(t - light.nearest, light.distance);
         let angles = (angle(range.0), angle(range.1));
         let is_usable = light.distance > 1e-12 * (range.1 - range.0) && angles.0 < angles.1;
         is_usable.then_some(Self { light, range, angles })
@@ -44,7 +44,7 @@ impl Equiangular {
 
     pub fn sample(&self, u: f64) -> f64 {
         let angle = self.angles.0 + (self.angles.1 - self.angles.0) * u;
-        let t = self.light.nearest + self.light.distance * angle.tan();
+        let t = self.light.nearest + self.light.distance * libm::tan(angle);
         t.clamp(self.range.0, self.range.1)
     }
 
@@ -59,7 +59,7 @@ pub(super) fn sample(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups)
     let distribution = ray.light().and_then(|light| Equiangular::new(light, (ray.start(), ray.end())));
     let Some(distribution) = distribution else { return delta_tracking::sample(ray, random, lookups) };
     let t = distribution.sample(random.f64());
-    let transmittance = (-ray.thickness(t, lookups)).exp();
+    let transmittance = libm::exp(-ray.thickness(t, lookups));
     let weight = ray.mu_t(t, lookups) * transmittance / distribution.pdf(t);
-    Flight { t: Some(t), weight, escape: (-ray.thickness(f64::INFINITY, lookups)).exp() }
+    Flight { t: Some(t), weight, escape: libm::exp(-ray.thickness(f64::INFINITY, lookups)) }
 }

@@ -23,11 +23,11 @@ pub(super) const PROPERTIES: Properties = Properties {
 pub(super) fn sample(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> Flight {
     let whole = ray.thickness(f64::INFINITY, lookups);
     // 1 − T without cancellation in thin media.
-    let weight = -(-whole).exp_m1();
-    let tau = -(-random.f64() * weight).ln_1p();
+    let weight = -libm::expm1(-whole);
+    let tau = -libm::log1p(-random.f64() * weight);
     match ray.distance_at(tau, lookups) {
-        Some(t) => Flight { t: Some(t), weight, escape: (-whole).exp() },
+        Some(t) => Flight { t: Some(t), weight, escape: libm::exp(-whole) },
         // The medium is empty, or rounding went past its end.
-        None => Flight { t: (weight > 0.0).then(|| ray.end()), weight, escape: (-whole).exp() },
+        None => Flight { t: (weight > 0.0).then(|| ray.end()), weight, escape: libm::exp(-whole) },
     }
 }

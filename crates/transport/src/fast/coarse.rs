@@ -27,7 +27,7 @@ impl Lattice {
         let boxes: Option<Vec<[DVec3; 2]>> = scene.volumes.iter().map(Volume::world_box).collect();
         let [min, max] = boxes?.into_iter().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
         let size = max - min;
-        let spacing = (size.element_product() / PLACES).cbrt().max(size.max_element() * 1e-3);
+        let spacing = libm::cbrt(size.element_product() / PLACES).max(size.max_element() * 1e-3);
         if spacing <= 0.0 || !spacing.is_finite() {
             return None;
         }

@@ -170,8 +170,8 @@ impl<'a> Engine<'a> {
 
         let thickness =
             scene.mu_t.map(|mu_t| if mu_t > 0.0 { f64::from(mu_t) * (leave - enter) } else { 0.0 });
-        let transmittance = thickness.map(|thickness| (-thickness).exp() as f32);
-        let opacity = thickness.map(|thickness| -(-thickness).exp_m1() as f32);
+        let transmittance = thickness.map(|thickness| libm::exp(-thickness) as f32);
+        let opacity = thickness.map(|thickness| -libm::expm1(-thickness) as f32);
         let mut background = scene.even;
         (0..CHANNELS).for_each(|c| background[c] *= transmittance[c]);
         let channel = ((random.f64() * scene.witnesses) as usize).min(CHANNELS - 1);

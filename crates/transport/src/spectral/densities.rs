@@ -41,7 +41,7 @@ impl PathDensities {
         self.relative *= exp(flight.log_density - greatest, 0.0);
         if let Some(next_event) = &mut self.next_event {
             *next_event *=
-                exp(flight.log_next_event - (flight.null_fraction.ln() + greatest), GREATEST_EXPONENT);
+                exp(flight.log_next_event - (libm::log(flight.null_fraction) + greatest), GREATEST_EXPONENT);
         }
         self.normalise();
     }
@@ -102,5 +102,5 @@ impl PathDensities {
 
 /// e to the power of each exponent, cut at `greatest`.
 fn exp(exponents: DVec4, greatest: f64) -> DVec4 {
-    DVec4::from_array(exponents.to_array().map(|exponent| exponent.min(greatest).exp()))
+    DVec4::from_array(exponents.to_array().map(|exponent| libm::exp(exponent.min(greatest))))
 }

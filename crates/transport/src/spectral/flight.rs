@@ -186,5 +186,5 @@ pub(super) fn optical_thickness(mu_t: DVec4, length: f64) -> DVec4 {
 }
 
 pub(super) fn ln(values: DVec4) -> DVec4 {
-    DVec4::from_array(values.to_array().map(f64::ln))
+    DVec4::from_array(values.to_array().map(libm::log))
 }

@@ -27,14 +27,14 @@ pub(super) const ANALOG: Properties =
 
 pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> f64 {
     let whole = ray.majorant_thickness();
-    let (mut sum, mut weight) = ((-whole).exp(), 1.0);
+    let (mut sum, mut weight) = (libm::exp(-whole), 1.0);
     let _ = tentative_collisions(
         ray,
         |piece| piece.majorant,
         random,
         |at, _| {
             weight *= 1.0 - ray.mu_t(at.t, lookups) / at.rate;
-            sum += weight * (at.depth - whole).exp();
+            sum += weight * libm::exp(at.depth - whole);
             if at.is_hopeless(weight) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         },
     );
@@ -43,7 +43,7 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
 
 pub(super) fn estimate_analog(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> f64 {
     let whole = ray.majorant_thickness();
-    let mut sum = (-whole).exp();
+    let mut sum = libm::exp(-whole);
     let _ = tentative_collisions(
         ray,
         |piece| piece.majorant,
@@ -52,7 +52,7 @@ pub(super) fn estimate_analog(ray: &AlongRay, random: &mut Random, lookups: &mut
             if random.f64() * at.rate < ray.mu_t(at.t, lookups) {
                 return ControlFlow::Break(());
             }
-            sum += (at.depth - whole).exp();
+            sum += libm::exp(at.depth - whole);
             ControlFlow::Continue(())
         },
     );

@@ -31,13 +31,13 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
     let Some(&(whole, _)) = pieces.last() else { return 1.0 };
     // Logarithms, as e^(−τ̄) may be too small for a number where later terms are not.
     let mut log_mass = -whole;
-    let mut mass = log_mass.exp();
+    let mut mass = libm::exp(log_mass);
     let (mut cumulated_mass, mut product, mut sum, mut k) = (mass, 1.0, mass, 0.0);
     loop {
         k += 1.0;
         if cumulated_mass < CERTAIN || k <= whole {
-            log_mass += (whole / k).ln();
-            mass = log_mass.exp();
+            log_mass += libm::log(whole / k);
+            mass = libm::exp(log_mass);
             cumulated_mass += mass;
         } else if random.f64() * k >= whole {
             return sum;

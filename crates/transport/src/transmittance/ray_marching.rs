@@ -21,7 +21,7 @@ pub(super) const PROPERTIES: Properties = Properties {
 pub(super) const STEPS: u32 = 64;
 
 pub(super) fn estimate(ray: &AlongRay, steps: u32, random: &mut Random, lookups: &mut Lookups) -> f64 {
-    (-marched_thickness(ray, steps.max(1).into(), random.f64(), lookups)).exp()
+    libm::exp(-marched_thickness(ray, steps.max(1).into(), random.f64(), lookups))
 }
 
 /// Optical thickness by `steps` equal steps, each looked at `offset` of the way through it.

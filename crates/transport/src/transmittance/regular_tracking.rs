@@ -16,5 +16,5 @@ pub(super) const PROPERTIES: Properties = Properties {
 };
 
 pub(super) fn transmittance(ray: &AlongRay, lookups: &mut Lookups) -> f64 {
-    (-ray.thickness(f64::INFINITY, lookups)).exp()
+    libm::exp(-ray.thickness(f64::INFINITY, lookups))
 }

@@ -35,5 +35,5 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
             if at.is_hopeless(residual) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         },
     );
-    (-control_thickness).exp() * residual
+    libm::exp(-control_thickness) * residual
 }

@@ -34,7 +34,7 @@ const MOST_STEPS: f64 = 1e5;
 
 pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookups) -> f64 {
     let coarsest = ray.majorant_thickness().ceil().clamp(1.0, MOST_STEPS) as u64;
-    let base = (-marched_thickness(ray, coarsest, random.f64(), lookups)).exp();
+    let base = libm::exp(-marched_thickness(ray, coarsest, random.f64(), lookups));
     let (mut steps, mut probability) = (coarsest, 1.0 - FINER);
     while random.f64() < FINER {
         steps *= 2;
@@ -44,7 +44,7 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
     // The halves of a march of 2·steps from `offset` are marches of `steps` from half of it, and from that and a half.
     let even = marched_thickness(ray, steps, 0.5 * offset, lookups);
     let odd = marched_thickness(ray, steps, 0.5 * (offset + 1.0), lookups);
-    let fine = (-0.5 * (even + odd)).exp();
-    let coarse = 0.5 * ((-even).exp() + (-odd).exp());
+    let fine = libm::exp(-0.5 * (even + odd));
+    let coarse = 0.5 * (libm::exp(-even) + libm::exp(-odd));
     base + (fine - coarse) / probability
 }

@@ -54,14 +54,14 @@ pub(super) fn estimate(ray: &AlongRay, random: &mut Random, lookups: &mut Lookup
                 mean * inverse_probability / factorial
             })
             .sum();
-        (-pivot).exp() * series
+        libm::exp(-pivot) * series
     });
     turns.sum::<f64>() / estimates.len() as f64
 }
 
 /// Lookups of each march under the optical thickness `tau` of the majorant.
 fn steps(tau: f64) -> u64 {
-    let p_series_cost = ((0.015 + tau) * (0.65 + tau) * (60.3 + tau)).cbrt().ceil();
+    let p_series_cost = libm::cbrt((0.015 + tau) * (0.65 + tau) * (60.3 + tau)).ceil();
     (p_series_cost / (1.0 + MEAN_ORDER)).round().clamp(1.0, MOST_STEPS) as u64
 }
 

@@ -10,7 +10,7 @@ use glam::DVec3;
 use tyndall_lanes::Random;
 use tyndall_scene::{Channels, Ray, Scene};
 
-use super::run::Walk;
+use super::run::{Walk, values_error};
 use super::tally::{Estimate, Scores, Tallies};
 use crate::reference::trace;
 use crate::spectral::SpectralScene;
@@ -62,7 +62,7 @@ impl LightMeter<'_> {
         });
         let direct: DVec3 = lights.sum();
         let (tangent, bitangent) = normal.any_orthonormal_pair();
-        let (sin_azimuth, cos_azimuth) = (std::f64::consts::TAU * random.f64()).sin_cos();
+        let (sin_azimuth, cos_azimuth) = libm::sincos(std::f64::consts::TAU * random.f64());
         let sin_squared = random.f64();
         let direction = (tangent * cos_azimuth + bitangent * sin_azimuth) * sin_squared.sqrt()
             + normal * (1.0 - sin_squared).sqrt();
@@ -94,10 +94,6 @@ impl Walk for LightMeter<'_> {
     }
 
     fn relative_error(&self, tallies: &Tallies) -> f64 {
-        let values = self.values(tallies);
-        let greatest = |pick: fn(&Estimate) -> f64| values.iter().map(pick).fold(0.0, f64::max);
-        let (error, mean) = (greatest(|value| value.standard_error), greatest(|value| value.mean));
-        // Darkness is accepted after so many paths into it.
-        if mean > 0.0 { error / mean } else { 100.0 / tallies.photons() as f64 }
+        values_error(&self.values(tallies), tallies)
     }
 }

@@ -43,6 +43,6 @@ impl DepthLimit {
             return 1.0;
         }
         position.y += excess;
-        (-excess * self.attenuation).exp()
+        libm::exp(-excess * self.attenuation)
     }
 }

@@ -187,6 +187,11 @@ impl Layer<'_> {
         }
     }
 
+    /// The tallies of the radiances, which, unlike fractions of the light, single photons can make much of.
+    pub fn radiance_tallies(&self) -> impl Iterator<Item = (usize, &'static str)> {
+        (FIRST_VIEW..self.kinds()).map(|kind| (kind, "radiance"))
+    }
+
     fn is_bounded(&self) -> bool {
         self.faces[0].is_finite()
     }

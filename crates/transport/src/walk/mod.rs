@@ -8,6 +8,7 @@
 mod backward;
 mod body;
 mod channel;
+mod doubts;
 mod flight;
 mod fresnel;
 mod half_space;
@@ -21,6 +22,7 @@ mod tally;
 pub use backward::{LightMeter, LightMeterKind};
 pub use body::{Body, BodyPowers};
 pub use channel::in_one_channel;
+pub use doubts::doubts;
 pub use flight::Tile;
 pub use half_space::DepthLimit;
 pub use layer::{ColumnFluxes, Incidence, Layer, LayerFluxes};

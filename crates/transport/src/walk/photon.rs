@@ -78,7 +78,7 @@ pub(super) fn first_collision<'a>(
 
 /// A downward direction with density cos θ/π: light of the same radiance from the whole upper hemisphere.
 pub(super) fn diffuse_direction(random: &mut Random) -> DVec3 {
-    let (sin_azimuth, cos_azimuth) = (std::f64::consts::TAU * random.f64()).sin_cos();
+    let (sin_azimuth, cos_azimuth) = libm::sincos(std::f64::consts::TAU * random.f64());
     let cos_squared = 1.0 - random.f64();
     let sin = (1.0 - cos_squared).sqrt();
     DVec3::new(sin * cos_azimuth, -cos_squared.sqrt(), sin * sin_azimuth)

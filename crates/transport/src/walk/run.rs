@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 
 use tyndall_lanes::Random;
 
+use crate::threads;
+
 use super::tally::{Estimate, MAX_PHOTONS, Scores, Tallies};
 
 /// Something that photons can be sent through.
@@ -88,6 +90,18 @@ pub(super) fn fraction_error(fraction: Estimate, tallies: &Tallies) -> f64 {
     error / fraction.mean.abs().max(LEAST_FRACTION)
 }
 
+/// The relative error of the greatest of values that are in the tallies from number 0 on; infinite as long as few photons
+/// tell it.
+pub(super) fn values_error(values: &[Estimate], tallies: &Tallies) -> f64 {
+    let greatest = |pick: fn(&Estimate) -> f64| values.iter().map(pick).fold(0.0, f64::max);
+    let (error, mean) = (greatest(|value| value.standard_error), greatest(|value| value.mean));
+    if !(0..values.len()).all(|tally| tallies.is_error_known(tally)) {
+        return f64::INFINITY;
+    }
+    // Darkness is accepted after so many paths into it.
+    if mean > 0.0 { error / mean } else { 100.0 / tallies.photons() as f64 }
+}
+
 /// The photons with the numbers `pass`; `None` if cancelled.
 fn send(walk: &impl Walk, pass: Range<u64>, options: &WalkOptions, cancel: &AtomicBool) -> Option<Tallies> {
     let next = AtomicU64::new(pass.start);
@@ -107,12 +121,44 @@ fn send(walk: &impl Walk, pass: Range<u64>, options: &WalkOptions, cancel: &Atom
         }
         sum.lock().unwrap_or_else(std::sync::PoisonError::into_inner).merge(&tallies);
     };
-    std::thread::scope(|scope| {
-        for _ in 1..options.threads.max(1) {
-            scope.spawn(work);
-        }
-        work();
-    });
+    threads::share(options.threads, work);
     let sum = sum.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     (!cancel.load(Ordering::Relaxed)).then_some(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Light 1 with little noise, and as much again that one photon in 10,000 brings.
+    struct RarePath;
+
+    impl Walk for RarePath {
+        fn tallies(&self) -> usize {
+            1
+        }
+
+        fn walk(&self, random: &mut Random, scores: &mut Scores) {
+            scores.add(0, 0.9 + 0.2 * random.f64() + if random.f64() < 1e-4 { 1e4 } else { 0.0 });
+        }
+
+        fn relative_error(&self, tallies: &Tallies) -> f64 {
+            values_error(&[tallies.estimate(0)], tallies)
+        }
+    }
+
+    #[test]
+    fn an_error_is_not_reached_while_one_photon_makes_most_of_it() {
+        // 40 % is there after two events, whose error is known to a third at best.
+        for seed in 0..20 {
+            let goal = Goal { samples: u64::MAX, error: Some(0.4), time: None };
+            let options = WalkOptions { seed, stream: 0, threads: 1, goal };
+            let tallies = run(&RarePath, &options, &AtomicBool::new(false));
+            let Estimate { mean, standard_error } = tallies.estimate(0);
+            // Without a single event nobody can know of it: that is a chance of exp(-0.82) in the first pass.
+            let is_met = mean > 1.1;
+            assert!(!is_met || tallies.photons() > 40_000 && standard_error > 0.1, "{seed}: {mean}");
+            assert!(!is_met || (mean - 2.0).abs() < 4.0 * standard_error, "{seed}: {mean} {standard_error}");
+        }
+    }
 }

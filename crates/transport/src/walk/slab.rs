@@ -113,7 +113,7 @@ impl Slab {
             1.0 => (0.0, mu),
             index => reflectance(mu, 1.0, index),
         };
-        let through = (-self.tau / inside).exp();
+        let through = libm::exp(-self.tau / inside);
         (1.0 - reflected).powi(2) * through / (1.0 - (reflected * through).powi(2))
     }
 }

@@ -62,14 +62,14 @@ pub const AZIMUTH: Rule =
 /// # Errors
 /// What to write instead.
 pub fn slanted(degrees: f64) -> Result<Incidence, &'static str> {
-    let (sin, cos) = INCIDENCE.check(degrees)?.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(INCIDENCE.check(degrees)?.to_radians());
     Ok(Incidence::Beam(DVec3::new(sin, -cos, 0.0)))
 }
 
 /// The directions in which light leaves at cosines `mu` to the normal, `azimuth` degrees from the way a slanted beam
 /// travels: all at the top, then, if there is a bottom, all there.
 pub fn views(mu: &[f64], azimuth: f64, has_bottom: bool) -> Vec<DVec3> {
-    let (sin_azimuth, cos_azimuth) = azimuth.to_radians().sin_cos();
+    let (sin_azimuth, cos_azimuth) = libm::sincos(azimuth.to_radians());
     let view = |mu: f64| {
         let across = (1.0 - mu * mu).sqrt();
         DVec3::new(across * cos_azimuth, mu, across * sin_azimuth)

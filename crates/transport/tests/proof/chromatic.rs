@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use tyndall_film::Film;
-use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{Channels, ChromaticMedium, Ray, Scene};
@@ -15,6 +14,7 @@ use tyndall_transport::SpectralScene;
 
 use crate::agreement::{Batches, HEAD, assert_same, assert_same_batches, batches};
 use crate::effort::is_full;
+use crate::fresh;
 use crate::rendering::render;
 use crate::scenes::{scene, scene_in, two_halves, with_next_event, write_random_npy};
 use crate::slab::{Row, rows};
@@ -167,7 +167,7 @@ fn a_slab_of_three_media_reflects_and_transmits_what_adding_doubling_says_of_eac
             let spectral = SpectralScene::new(&scene, Channels::Rgb);
             let mut values: [Vec<f64>; 3] = Default::default();
             for path in 0..paths {
-                let mut random = Random::new(41 + u64::from(from_above), first as u64, path);
+                let mut random = fresh::random(41 + u64::from(from_above), first as u64, path);
                 let sample = spectral.trace(Ray { origin: DVec3::Y, direction: DVec3::NEG_Y }, &mut random);
                 for (values, value) in values.iter_mut().zip(sample.radiance) {
                     values.push(value.into());
@@ -238,7 +238,7 @@ fn white_media_of_any_colour_of_extinction_stay_white() {
     for (name, scene) in furnaces() {
         let spectral = SpectralScene::new(&scene, Channels::Rgb);
         for path in 0..2000 {
-            let mut random = Random::new(3, 0, path);
+            let mut random = fresh::random(3, 0, path);
             let ray = scene.camera.ray([10, 10], [0.5, 0.5], [0.5, 0.5]);
             let sum: f32 = spectral.trace(ray, &mut random).radiance.iter().sum();
             assert!((sum - 3.0).abs() < 1e-4, "{name}: {sum}");
@@ -298,7 +298,7 @@ fn channels_without_extinction_or_without_scattering_are_exact_on_average() {
     let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::NEG_Z };
     let mut values: [Vec<f64>; 3] = Default::default();
     for path in 0..20_000 {
-        let sample = spectral.trace(ray, &mut Random::new(5, 0, path));
+        let sample = spectral.trace(ray, &mut fresh::random(5, 0, path));
         values.iter_mut().zip(sample.radiance).for_each(|(values, value)| values.push(value.into()));
     }
     let truth = [0.5, 2.0 * (-0.01_f64 * (2.0 + 9.0)).exp(), 3.0];
@@ -323,7 +323,7 @@ fn channels_a_hundred_times_apart_make_no_outliers() {
         let spectral = SpectralScene::new(scene, Channels::Rgb);
         let mut squares: [Vec<f64>; 3] = Default::default();
         for path in 0..20_000 {
-            let mut random = Random::new(6, 0, path);
+            let mut random = fresh::random(6, 0, path);
             let ray = scene.camera.ray([12, 12], [random.f64(), random.f64()], [0.5, 0.5]);
             let radiance = spectral.trace(ray, &mut random).radiance;
             squares.iter_mut().zip(radiance).for_each(|(squares, x)| squares.push(f64::from(x).powi(2)));

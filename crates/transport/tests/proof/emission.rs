@@ -8,13 +8,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
-use tyndall_lanes::Random;
 use tyndall_optics::{cie, planck};
 use tyndall_scene::description::Integrator;
 use tyndall_scene::{ChromaticMedium, Ray, Scene};
 use tyndall_transport::{DistanceSampler, Estimators, trace, trace_with};
 
 use crate::agreement::{HEAD, assert_same};
+use crate::fresh;
 use crate::rendering::{BOTH, render};
 use crate::scenes::{scene, scene_in, write_npy, write_random_npy};
 use crate::slab::rows;
@@ -131,7 +131,7 @@ fn a_layer_shines_over_the_hemisphere_with_its_emissivity() {
             ));
             let values: Vec<f64> = (0..PATHS)
                 .map(|path| {
-                    let mut random = Random::new(43 + u64::from(per_length), (tau * 100.0) as u64, path);
+                    let mut random = fresh::random(43 + u64::from(per_length), (tau * 100.0) as u64, path);
                     let down = (1.0 - random.f64()).sqrt();
                     let (sin, cos) = (std::f64::consts::TAU * random.f64()).sin_cos();
                     let across = (1.0 - down * down).sqrt();
@@ -196,7 +196,7 @@ fn uneven_matter_with_uneven_sources_shines_as_its_line_integral() {
             let forced = Estimators { distance: Some(DistanceSampler::ForcedCollision), transmittance: None };
             let values: Vec<f64> = (0..PATHS)
                 .map(|path| {
-                    let mut random = Random::new(47, 0, path);
+                    let mut random = fresh::random(47, 0, path);
                     let ray = scene.camera.ray([0, 0], [0.5, 0.5], [0.5, 0.5]);
                     f64::from(trace_with(&scene, forced, ray, &mut random).radiance[0])
                 })

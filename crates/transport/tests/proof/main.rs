@@ -1,7 +1,7 @@
 //! Proof of the transport: what it computes against what is known without it.
 //!
 //! Every test is a statistical one with fixed seeds, so that it gives the same answer each time; the level at which it
-//! would fail by chance for other seeds is stated with each. Where both integrators can be asked, both are.
+//! would fail by chance for other seeds (see [`fresh`]) is stated with each. Where both integrators can be asked, both are.
 
 mod agreement;
 mod chromatic;
@@ -9,6 +9,8 @@ mod effort;
 mod emission;
 mod estimators;
 mod fast_spectral;
+mod golden;
+mod fresh;
 mod phase_functions;
 mod random_scenes;
 mod rendering;

@@ -7,6 +7,8 @@ use tyndall_scene::Scene;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
 
+use crate::fresh;
+
 pub const BOTH: [Integrator; 2] = [Integrator::Reference, Integrator::Fast];
 
 /// One thread and the default estimators.
@@ -32,6 +34,7 @@ pub fn render_with(scene: &Scene, options: RenderOptions, samples: Range<u64>) -
 /// Adds the samples to the film.
 pub fn add_pass(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
     film.open_range(samples.start).expect("passes follow each other");
+    let options = RenderOptions { seed: fresh::seed(options.seed), ..options };
     let outcome = render_pass(scene, film, samples.end, &options, &Control::default());
     assert_eq!(outcome, Outcome::Complete);
     film.complete_through(samples.end).expect("a complete pass holds all its samples");

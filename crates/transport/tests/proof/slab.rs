@@ -12,6 +12,7 @@ use tyndall_scene::description::Integrator;
 use tyndall_scene::{Ray, Scene};
 use tyndall_transport::trace;
 
+use crate::fresh;
 use crate::rendering::render;
 use crate::scenes::{scene, two_halves, with_next_event};
 use crate::statistics::{kolmogorov_smirnov, normal_cdf};
@@ -118,7 +119,7 @@ fn cosine_weighted(random: &mut Random) -> DVec3 {
 #[test]
 fn the_step_between_the_two_halves_is_at_the_horizon() {
     let light = two_halves([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
-    let mut random = Random::new(1, 0, 0);
+    let mut random = fresh::random(1, 0, 0);
     for _ in 0..10_000 {
         let sample = light.sample(DVec3::ZERO, [random.f64(), random.f64()]);
         let above = if sample.toward.y > 0.0 { DVec3::X } else { DVec3::Y };
@@ -142,7 +143,7 @@ fn the_reference_reflects_and_transmits_what_adding_doubling_says() {
         for (incidence, family) in families.iter_mut().enumerate() {
             let (mut sum, mut squares) = ([0.0; 2], [0.0; 2]);
             for path in 0..PATHS {
-                let mut random = Random::new(11 + incidence as u64, number as u64, path);
+                let mut random = fresh::random(11 + incidence as u64, number as u64, path);
                 let direction = match incidence {
                     0 => NORMAL,
                     1 => at_60_degrees(),

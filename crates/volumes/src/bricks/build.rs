@@ -10,6 +10,7 @@ use super::storage::{Bricks, Storage};
 use crate::{Grid, GridValues, LEAF_VOXELS, Tree};
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
+use tyndall_machine::memory::{self, MemoryError};
 
 /// Why a grid cannot become bricks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -25,7 +26,13 @@ pub enum BuildError {
     /// More bricks than an entry can number.
     #[error("grid `{0}` has more than 2^30 leaves")]
     TooMany(String),
+    /// There is no memory for them.
+    #[error("grid `{0}`: {1}")]
+    Memory(String, MemoryError),
 }
+
+/// What finding a leaf takes in the tables made while building, about.
+const LEAF_LOOKUP_BYTES: usize = 256;
 
 /// Voxel values that can be taken as scalars.
 trait Scalar: Copy {
@@ -111,6 +118,15 @@ fn build<T: Scalar>(
             range = range.union(Bounds::of(value));
         }
     }
+    let brick_bytes = storage.brick_bytes();
+    memory::ask_for(tree.leaves.len(), brick_bytes + LEAF_LOOKUP_BYTES, || {
+        format!(
+            "{} bricks of 512 voxels of {} bytes and where they are",
+            tree.leaves.len(),
+            brick_bytes / LEAF_VOXELS
+        )
+    })
+    .map_err(|error| BuildError::Memory(name.to_owned(), error))?;
     let mut bricks = Bricks::new(storage, tree.leaves.len(), range);
     let mut sources = Sources::new(background);
     for (leaf, values) in tree.leaves.iter().zip(tree.leaf_values.chunks_exact(LEAF_VOXELS)) {

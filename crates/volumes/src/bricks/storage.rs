@@ -14,6 +14,17 @@ pub enum Storage {
     F32,
 }
 
+impl Storage {
+    /// Memory of a brick; those of halves may turn out to be of f32, where values are beyond what halves reach.
+    pub(super) fn brick_bytes(self) -> usize {
+        match self {
+            Self::U8 => LEAF_VOXELS + size_of::<[f32; 2]>(),
+            Self::F16 => 2 * LEAF_VOXELS,
+            Self::F32 => 4 * LEAF_VOXELS,
+        }
+    }
+}
+
 /// Bricks of one storage; kernels are compiled for each.
 pub trait BrickValues: Sync {
     /// Value of voxel `offset` (x << 6 | y << 3 | z) of brick `brick`.
@@ -144,12 +155,12 @@ impl Bricks {
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
-        self.count()
-            * match self {
-                Bricks::U8(_) => LEAF_VOXELS + 8,
-                Bricks::F16(_) => 2 * LEAF_VOXELS,
-                Bricks::F32(_) => 4 * LEAF_VOXELS,
-            }
+        let storage = match self {
+            Bricks::U8(_) => Storage::U8,
+            Bricks::F16(_) => Storage::F16,
+            Bricks::F32(_) => Storage::F32,
+        };
+        self.count() * storage.brick_bytes()
     }
 }
 
@@ -164,7 +175,7 @@ fn largest_magnitude(bounds: Bounds) -> f32 {
 /// power of two that brings the largest magnitude into [2^14, 2^15).
 fn half_factor(bounds: Bounds) -> f32 {
     let largest = largest_magnitude(bounds);
-    let exponent = if largest > 0.0 && largest.is_finite() { largest.log2().floor() as i32 } else { 0 };
+    let exponent = if largest > 0.0 && largest.is_finite() { libm::log2f(largest).floor() as i32 } else { 0 };
     // Between 2^-3 and 2^15 halves resolve the range to 2^-21 of its largest value without help.
     let scale = if (-3..15).contains(&exponent) { 0 } else { exponent - 14 };
     2.0_f32.powi(112 + scale)

@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use tyndall_machine::memory;
+
 use crate::fault::Fault;
 use crate::float_tree::{Voxel, active_bounds};
 use crate::{LEAF_VOXELS, Tree};
@@ -131,7 +133,9 @@ pub(super) fn build<T: Stored>(tree: &Tree<T>) -> Result<Built, Fault> {
     let first_upper = root + layout.root_head() + root_entries * layout.root_entry();
     let first_lower = first_upper + uppers.len() * layout.inner(UPPER);
     let first_leaf = first_lower + lowers.len() * layout.inner(LOWER);
-    let mut buffer = Buffer { bytes: vec![0; first_leaf + leaf_order.len() * layout.leaf()], layout };
+    let size = first_leaf + leaf_order.len() * layout.leaf();
+    memory::ask(size as u64, || format!("the {size} bytes of a grid to be written"))?;
+    let mut buffer = Buffer { bytes: vec![0; size], layout };
 
     let uppers_at = |n: usize| first_upper + n * layout.inner(UPPER);
     let lowers_at = |n: usize| first_lower + n * layout.inner(LOWER);

@@ -28,6 +28,7 @@ use std::fmt;
 use std::io::{Read, Seek, SeekFrom};
 
 use flate2::read::ZlibDecoder;
+use tyndall_machine::memory;
 
 use crate::GridSelection;
 use crate::fault::Fault;
@@ -203,6 +204,7 @@ fn read_buffer(source: &mut impl Read, codec: Codec, size: u64, on_disk: u64) ->
     if size > on_disk.saturating_mul(MOST_EXPANSION) {
         return Err(Fault::Damaged(format!("corrupt: {on_disk} bytes cannot hold a grid of {size} bytes")));
     }
+    memory::ask(size, || format!("the {size} bytes of a grid"))?;
     let mut stored = source.take(on_disk);
     let mut buffer = Vec::new();
     match codec {
@@ -239,6 +241,7 @@ fn read_buffer(source: &mut impl Read, codec: Codec, size: u64, on_disk: u64) ->
 /// `len` bytes at `at`, which are known to be no more than the file has.
 fn read_at(source: &mut (impl Read + Seek), at: u64, len: u64) -> Result<Vec<u8>, Fault> {
     source.seek(SeekFrom::Start(at))?;
+    memory::ask(len, || format!("{len} bytes of the file"))?;
     let mut bytes = Vec::new();
     bytes.reserve_exact(len as usize);
     source.take(len).read_to_end(&mut bytes)?;

@@ -4,6 +4,8 @@
 //! may not overlap: so the work and the memory a file can ask for are bounded by its own bytes, whatever its
 //! counts say. Origins follow from the position in the tree, not from the boxes stored in the nodes.
 
+use tyndall_machine::memory;
+
 use crate::fault::Fault;
 use crate::little_endian::{bytes_at, i64_at, u32_at, u64_at};
 use crate::{Leaf, Tile, Tree};
@@ -42,6 +44,9 @@ where
     let leaves = inner_children(grid, lowers, LOWER, layout, &decode.value, &mut tree)?;
 
     let leaves = apart(leaves, layout.leaf(), grid.len(), "leaves")?;
+    memory::ask_for(leaves.len(), crate::LEAF_VOXELS * size_of::<T>(), || {
+        format!("{} leaves of 512 voxels of {} bytes", leaves.len(), size_of::<T>())
+    })?;
     tree.leaves.reserve_exact(leaves.len());
     tree.leaf_values.reserve_exact(leaves.len() * crate::LEAF_VOXELS);
     for (origin, at) in leaves {

@@ -8,6 +8,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use glam::DVec3;
+use tyndall_machine::memory;
 
 use crate::fault::Fault;
 use crate::float_tree::FloatTree;
@@ -209,6 +210,10 @@ fn append_name(buffer: &mut Vec<u8>, name: &str) {
 }
 
 fn pack(buffer: Vec<u8>, codec: Codec) -> Result<Vec<u8>, Fault> {
+    if codec != Codec::None {
+        // Packed it is hardly ever larger.
+        memory::ask(buffer.len() as u64, || format!("{} bytes to be compressed", buffer.len()))?;
+    }
     let mut packed = vec![];
     match codec {
         Codec::None => return Ok(buffer),

@@ -2,6 +2,8 @@
 //!
 //! All numbers of an OpenVDB file are little endian; strings are a u32 length and so many bytes.
 
+use tyndall_machine::memory::MemoryError;
+
 /// What is wrong with a file, before its path and grid are known.
 #[derive(Debug, Clone)]
 pub(super) enum Problem {
@@ -9,6 +11,8 @@ pub(super) enum Problem {
     Damaged(String),
     /// The bytes are sound, but not read here.
     Unsupported(String),
+    /// There is no memory for what they hold.
+    Memory(MemoryError),
 }
 
 impl Problem {
@@ -17,7 +21,14 @@ impl Problem {
         match self {
             Self::Damaged(what) => Self::Damaged(format!("{place}: {what}")),
             Self::Unsupported(what) => Self::Unsupported(format!("{place}: {what}")),
+            Self::Memory(error) => Self::Memory(error),
         }
+    }
+}
+
+impl From<MemoryError> for Problem {
+    fn from(error: MemoryError) -> Self {
+        Self::Memory(error)
     }
 }
 

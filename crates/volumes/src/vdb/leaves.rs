@@ -15,6 +15,7 @@ use super::value::Value;
 use super::values::{Decoder, Stored};
 use crate::{LEAF_VOXELS, Leaf};
 use rayon::prelude::*;
+use tyndall_machine::memory;
 
 const MASK_BYTES: usize = LEAF_VOXELS / 8;
 const ORIGIN_BYTES: usize = 12;
@@ -65,8 +66,8 @@ pub(super) fn decode<T: Value>(
     offsets: &[usize],
 ) -> Result<Vec<T>, Problem> {
     let count = offsets.len() * LEAF_VOXELS;
-    Vec::<T>::new().try_reserve_exact(count).map_err(|_| {
-        Problem::Unsupported(format!("there is not enough memory for its {} leaves", offsets.len()))
+    memory::ask_for(count, size_of::<T>(), || {
+        format!("{} leaves of 512 voxels of {} bytes", offsets.len(), size_of::<T>())
     })?;
     let mut values = vec![T::ZERO; count];
     let problem = values

@@ -10,6 +10,7 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
+use tyndall_machine::{files, memory};
 
 /// Trees that several grids share are copied up to so many bytes a file. Past that the file is either one of its
 /// kind or made to exhaust memory.
@@ -40,12 +41,13 @@ pub struct SkippedGrid {
 /// not read, and when all are asked for and none can be read.
 pub fn read(path: &Path, selection: &GridSelection) -> Result<VdbFile, ReadError> {
     let io = |error| ReadError::Io { path: path.to_owned(), error };
-    let mut file = std::fs::File::open(path).map_err(io)?;
+    let mut file = files::open(path).map_err(io)?;
     let mut bytes = Vec::new();
     // A large file of another kind is not read to its end.
     file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut bytes).map_err(io)?;
     if bytes == MAGIC {
         let len = file.metadata().map_err(io)?.len();
+        memory::ask(len, || format!("the {len} bytes of the file")).map_err(|error| io(error.into()))?;
         bytes
             .try_reserve_exact(usize::try_from(len).unwrap_or(usize::MAX))
             .map_err(|error| io(error.into()))?;
@@ -70,6 +72,7 @@ impl Problem {
         match self {
             Self::Damaged(what) => ReadError::Damaged { path, what },
             Self::Unsupported(what) => ReadError::Unsupported { path, what },
+            Self::Memory(error) => ReadError::Io { path, error: error.into() },
         }
     }
 

@@ -1,7 +1,8 @@
 //! The file that is written: it grows, its offsets are filled in afterwards, and its content is hashed on the way.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
+
+use tyndall_machine::Unfinished;
 
 /// Why writing stopped, before the path and grid are known.
 pub(super) enum Failure {
@@ -18,17 +19,17 @@ impl From<io::Error> for Failure {
 }
 
 /// The file as it grows.
-pub(super) struct Sink {
-    file: BufWriter<File>,
+pub(super) struct Sink<'a, 'f> {
+    file: &'a mut Unfinished<'f>,
     /// Bytes written so far.
     pub(super) position: u64,
     hash: Hash,
 }
 
-impl Sink {
+impl<'a, 'f> Sink<'a, 'f> {
     /// Begins an empty file.
-    pub(super) fn new(file: File) -> Self {
-        Self { file: BufWriter::new(file), position: 0, hash: Hash::new() }
+    pub(super) fn new(file: &'a mut Unfinished<'f>) -> Self {
+        Self { file, position: 0, hash: Hash::new() }
     }
 
     /// Appends bytes.
@@ -50,11 +51,6 @@ impl Sink {
     /// A UUID made of everything put so far.
     pub(super) fn uuid(&self) -> String {
         self.hash.uuid()
-    }
-
-    /// Hands everything to the operating system.
-    pub(super) fn finish(mut self) -> Result<(), Failure> {
-        Ok(self.file.flush()?)
     }
 }
 

@@ -14,9 +14,8 @@ use super::write_tree::TreeWriter;
 use super::{metadata, transform};
 use crate::{Components, Grid, GridStatistics, GridValues, Tree, WriteError};
 use std::collections::{BTreeMap, HashSet};
-use std::fs::File;
-use std::io;
 use std::path::Path;
+use tyndall_machine::{Unfinished, write_atomically};
 
 const VERSION: u32 = 224;
 /// The library whose format this is; some readers look at it.
@@ -37,17 +36,9 @@ pub struct WriteOptions {
 /// When the file cannot be written, when leaves or tiles of a tree overlap or stand where an OpenVDB tree has no
 /// place for them, and when a finite value is too large for a half that is asked for.
 pub fn write(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<(), WriteError> {
-    let io = |error| WriteError::Io { path: path.to_owned(), error };
-    let name = path.file_name().ok_or_else(|| io(io::ErrorKind::IsADirectory.into()))?;
-    let part = path.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
-    let written = write_file(&part, grids, options).and_then(|()| Ok(std::fs::rename(&part, path)?));
-    written.map_err(|failure| {
-        // What is left of it is of no use to anyone; that it cannot be removed either adds nothing.
-        let _ = std::fs::remove_file(&part);
-        match failure {
-            Failure::Io(source) => io(source),
-            Failure::Unwritable(what) => WriteError::Unwritable { path: path.to_owned(), what },
-        }
+    write_atomically(path, |file| write_file(file, grids, options)).map_err(|failure| match failure {
+        Failure::Io(error) => WriteError::Io { path: path.to_owned(), error },
+        Failure::Unwritable(what) => WriteError::Unwritable { path: path.to_owned(), what },
     })
 }
 
@@ -57,8 +48,8 @@ pub(super) fn string(out: &mut Vec<u8>, text: &str) {
     out.extend_from_slice(text.as_bytes());
 }
 
-fn write_file(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<(), Failure> {
-    let mut sink = Sink::new(File::create(path)?);
+fn write_file(file: &mut Unfinished<'_>, grids: &[Grid], options: &WriteOptions) -> Result<(), Failure> {
+    let mut sink = Sink::new(file);
     let mut start = MAGIC.to_vec();
     for number in [VERSION].into_iter().chain(LIBRARY_VERSION) {
         start.extend_from_slice(&number.to_le_bytes());
@@ -80,8 +71,7 @@ fn write_file(path: &Path, grids: &[Grid], options: &WriteOptions) -> Result<(),
         })?;
     }
     let uuid = sink.uuid();
-    sink.patch(uuid_position, uuid.as_bytes())?;
-    sink.finish()
+    sink.patch(uuid_position, uuid.as_bytes())
 }
 
 /// Names with a number behind where several grids, or one without a name, would have the same.

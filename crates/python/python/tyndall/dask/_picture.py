@@ -86,7 +86,8 @@ class Picture:
     def next_round(self) -> bool:
         """Plans the next round, of a picture that is at home; whether there is one."""
         assert self.home is not None
-        end = self.goal.next_round(self.round_end, self.home.median_error if self.goal.error is not None else None)
+        asked = self.goal.error
+        end = self.goal.next_round(self.round_end, None if asked is None else self.home.error_against(asked))
         if end is not None:
             self.todo.append(((self.round_end, end), 0))
             self.round_end = end

@@ -1,8 +1,9 @@
 //! Meshes written as .ply files: binary, least byte first, in doubles, so that what is read back is identical.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
+
+use tyndall_machine::write_atomically;
 
 use super::Mesh;
 use crate::SceneError;
@@ -13,25 +14,7 @@ use crate::SceneError;
 /// If the file cannot be written.
 pub fn write_ply(path: &Path, mesh: &Mesh) -> Result<(), SceneError> {
     let refuse = |error: io::Error| SceneError::file(path, format!("cannot be written: {error}"));
-    let Some(name) = path.file_name() else {
-        return Err(SceneError::file(path, "is no name for a file"));
-    };
-    let mut unfinished = std::ffi::OsString::from(".");
-    unfinished.push(name);
-    unfinished.push(format!(".{}.unfinished", std::process::id()));
-    let unfinished = path.with_file_name(unfinished);
-    let result = write_whole(&unfinished, mesh).and_then(|()| fs::rename(&unfinished, path));
-    if result.is_err() {
-        // The failure itself is what the user has to hear of.
-        let _ = fs::remove_file(&unfinished);
-    }
-    result.map_err(refuse)
-}
-
-fn write_whole(path: &Path, mesh: &Mesh) -> io::Result<()> {
-    let mut out = BufWriter::with_capacity(1 << 20, File::create(path)?);
-    write_to(&mut out, mesh)?;
-    out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    write_atomically(path, |file| write_to(file, mesh)).map_err(refuse)
 }
 
 fn write_to(out: &mut impl Write, mesh: &Mesh) -> io::Result<()> {

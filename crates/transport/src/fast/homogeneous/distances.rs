@@ -125,7 +125,7 @@ impl Equiangular {
         let beside = (offset - ray.direction * nearest).length_squared();
         let distance = (beside + place.softening).sqrt();
         let (a, b) = (-nearest, f64::from(end) - nearest);
-        let angle = (distance * (b - a)).atan2(distance * distance + a * b);
+        let angle = libm::atan2(distance * (b - a), distance * distance + a * b);
         let scale = 1.0 / (distance * distance + a * a).sqrt();
         let is_usable = distance > 1e-6 * f64::from(end) && angle > 0.0;
         is_usable.then_some(Self {

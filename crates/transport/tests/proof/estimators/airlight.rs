@@ -4,13 +4,13 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use serde_json::Value;
-use tyndall_lanes::Random;
 use tyndall_scene::Ray;
 use tyndall_transport::along_ray::{AlongRay, LightBeside, Profile};
 use tyndall_transport::{DistanceSampler, Estimators, Repeated, repeat_distance, trace_with};
 
 use super::effort;
 use super::rays::{number, rows};
+use crate::fresh;
 use crate::scenes::scene;
 use crate::statistics::two_sided_quantile;
 
@@ -47,7 +47,7 @@ fn distance_samplers_estimate_the_airlight_of_a_point_light() {
             [DistanceSampler::Equiangular, DistanceSampler::ForcedCollision, DistanceSampler::DeltaTracking]
         {
             let samples = 20_000 * effort();
-            let found = repeat_distance(sampler, &along, samples, 3, |f| {
+            let found = repeat_distance(sampler, &along, samples, fresh::seed(3), |f| {
                 f.t.map_or(0.0, |t| f.weight * scattered(t))
             });
             let z = found.z(at("L_single_scatter"));
@@ -96,7 +96,7 @@ fn equiangular_samples_in_the_integrator_keep_the_mean_and_lessen_the_variance()
             let estimators = Estimators { distance, transmittance: None };
             estimators.validate(&scene).expect("there is a point light");
             let found = Repeated::of(40_000 * effort(), |n, _| {
-                f64::from(trace_with(&scene, estimators, ray, &mut Random::new(9, 0, n)).radiance[0])
+                f64::from(trace_with(&scene, estimators, ray, &mut fresh::random(9, 0, n)).radiance[0])
             });
             let z = found.z(at("L_single_scatter"));
             assert!(z.abs() < two_sided_quantile(1e-3 / 6.0), "{distance:?}: {row}: {found:?}, z = {z}");

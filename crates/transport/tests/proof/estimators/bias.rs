@@ -8,6 +8,7 @@ use tyndall_transport::along_ray::{AlongRay, Profile};
 use tyndall_transport::{DistanceSampler, TransmittanceEstimator, repeat_distance, repeat_transmittance};
 
 use super::effort;
+use crate::fresh;
 use crate::statistics::two_sided_quantile;
 
 const RAMP: f64 = 6.0;
@@ -28,7 +29,7 @@ fn ray_marched_transmittance_has_the_bias_of_the_second_order() {
     let mut points = Vec::new();
     for steps in [2, 4, 8, 16] {
         let estimator = TransmittanceEstimator::RayMarching { steps };
-        let found = repeat_transmittance(estimator, &ramp(), 200_000 * effort(), 1);
+        let found = repeat_transmittance(estimator, &ramp(), 200_000 * effort(), fresh::seed(1));
         let z = found.z(biased_mean(steps));
         assert!(z.abs() < two_sided_quantile(1e-3 / 4.0), "{steps} steps: {found:?}, z = {z}");
         assert_eq!(found.lookups, f64::from(steps));
@@ -44,7 +45,8 @@ fn ray_marched_transmittance_has_the_bias_of_the_second_order() {
 fn ray_marched_distances_escape_with_the_biased_transmittance() {
     for steps in [1, 2, 4, 64] {
         let sampler = DistanceSampler::RayMarching { steps };
-        let found = repeat_distance(sampler, &ramp(), 100_000 * effort(), 2, |flight| flight.escape);
+        let found =
+            repeat_distance(sampler, &ramp(), 100_000 * effort(), fresh::seed(2), |flight| flight.escape);
         let z = found.z(biased_mean(steps));
         assert!(z.abs() < two_sided_quantile(1e-3 / 4.0), "{steps} steps: {found:?}, z = {z}");
     }

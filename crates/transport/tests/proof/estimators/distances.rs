@@ -3,13 +3,13 @@
 
 use glam::DVec3;
 use serde_json::Value;
-use tyndall_lanes::Random;
 use tyndall_transport::along_ray::{AlongRay, Bounding, Control, LightBeside};
 use tyndall_transport::distance::ChromaticFlight;
 use tyndall_transport::{DistanceSampler, Flight, Lookups, MajorantUse, Repeated, repeat_distance};
 
 use super::effort;
 use super::rays::{Tabulated, along, profiles, rows, scenes, table};
+use crate::fresh;
 use crate::statistics::{kolmogorov_smirnov, normal_cdf, two_sided_quantile};
 
 const SAMPLES: u64 = 4000;
@@ -43,7 +43,7 @@ fn moment_score(sampler: DistanceSampler, ray: &AlongRay, truth: &Tabulated, see
         (Some(f), t) => t.map_or(0.0, |t| flight.weight * f(t)),
         (None, _) => flight.escape,
     };
-    let found = repeat_distance(sampler, ray, SAMPLES * effort(), seed, score);
+    let found = repeat_distance(sampler, ray, SAMPLES * effort(), fresh::seed(seed), score);
     let truth = f.map_or((-truth.whole()).exp(), |f| truth.collisions(f));
     if found.variance < 1e-18 {
         assert!((found.mean - truth).abs() < 1e-4, "{}: {found:?}, not {truth}", sampler.name());
@@ -63,7 +63,7 @@ fn weighted_collisions_of_every_unbiased_sampler_integrate_mu_t_times_t() {
     let mut rays: Vec<AlongRay> =
         profiles.map(|(profile, length)| lit(AlongRay::with_profile(profile, length, 5))).collect();
     for (_, scene) in &scenes {
-        let mut random = Random::new(13, 0, 0);
+        let mut random = fresh::random(13, 0, 0);
         rays.extend((0..6).map(|_| lit(along(scene, &mut random).1)));
     }
     let truths: Vec<Tabulated> = rays.iter().map(|ray| Tabulated::new(ray, 40_000)).collect();
@@ -95,7 +95,7 @@ fn distances_of_analog_samplers_follow_the_extinction_along_the_ray() {
         }
         let mut uniform = Vec::new();
         for (_, scene) in scenes() {
-            let mut random = Random::new(17, 0, 0);
+            let mut random = fresh::random(17, 0, 0);
             for _ in 0..6 {
                 let (_, ray) = along(&scene, &mut random);
                 let truth = Tabulated::new(&ray, 40_000);
@@ -124,7 +124,7 @@ fn free_flights_have_the_tabulated_quantiles() {
             for sampler in DistanceSampler::ALL.iter().filter(|sampler| sampler.properties().unbiased) {
                 let share =
                     |flight: &Flight| if flight.t.is_some_and(|t| t < s) { flight.weight } else { 0.0 };
-                let found = repeat_distance(*sampler, &ray, 2000 * effort(), 21, share);
+                let found = repeat_distance(*sampler, &ray, 2000 * effort(), fresh::seed(21), share);
                 let z = found.z(p);
                 assert!(
                     z.abs() < two_sided_quantile(1e-3 / 500.0),
@@ -139,7 +139,7 @@ fn free_flights_have_the_tabulated_quantiles() {
 /// Distance and optical thickness are each other's inverse, to rounding, on every kind of ray.
 #[test]
 fn the_distance_at_an_optical_thickness_has_that_optical_thickness() {
-    let mut random = Random::new(23, 0, 0);
+    let mut random = fresh::random(23, 0, 0);
     let mut check = |ray: AlongRay| {
         let lookups = &mut Lookups::default();
         let whole = ray.thickness(f64::INFINITY, lookups);
@@ -154,7 +154,7 @@ fn the_distance_at_an_optical_thickness_has_that_optical_thickness() {
         check(AlongRay::with_profile(profile, length, 4));
     }
     for (_, scene) in scenes() {
-        let mut random = Random::new(24, 0, 0);
+        let mut random = fresh::random(24, 0, 0);
         (0..20).for_each(|_| check(along(&scene, &mut random).1));
     }
 }
@@ -171,7 +171,7 @@ fn spectral_tracking_is_unbiased_in_every_channel() {
                 let truth = (-tint[channel] * tau).exp();
                 let flights = |weight: fn(&ChromaticFlight) -> DVec3| {
                     Repeated::of(20_000 * effort(), |n, lookups| {
-                        let random = &mut Random::new(31, number, n);
+                        let random = &mut fresh::random(31, number, n);
                         weight(&ChromaticFlight::sample(&ray, tint, throughput, random, lookups))[channel]
                     })
                 };

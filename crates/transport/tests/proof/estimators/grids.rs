@@ -11,6 +11,7 @@ use tyndall_scene::{Density, Ray, Scene, Volume};
 use tyndall_transport::{estimate_transmittance, sample_distance};
 use tyndall_volumes::BrickGrid;
 
+use crate::fresh;
 use crate::rendering::render;
 use crate::scenes::{random_direction, scene, scene_in, write_npy, write_random_npy};
 use crate::statistics::{kolmogorov_smirnov, mean_and_error, normal_cdf, two_sided_quantile};
@@ -108,7 +109,7 @@ fn collision_distances_in_a_grid_of_ones_follow_the_exponential_law() {
         // From within, and not as far as the border, where the field fades out.
         let ray = Ray { origin: DVec3::new(9.0, 8.0, 13.0), direction: direction.normalize() };
         let end = 9.0;
-        let mut random = Random::new(3, number as u64, 0);
+        let mut random = fresh::random(3, number as u64, 0);
         let draws: Vec<_> =
             (0..100_000).map(|_| sample_distance(volume, &ray, (0.0, end), &mut random)).collect();
         let inside: Vec<f64> = draws.iter().flatten().copied().collect();
@@ -127,7 +128,7 @@ fn collision_distances_in_a_grid_of_ones_follow_the_exponential_law() {
 fn collision_distances_in_rough_grids_follow_the_extinction_along_the_ray() {
     for (name, scene) in heterogeneous() {
         let volume = &scene.volumes[0];
-        let mut random = Random::new(4, 0, 0);
+        let mut random = fresh::random(4, 0, 0);
         let mut uniform = Vec::new();
         let (mut inside, mut expected, mut variance) = (0.0, 0.0, 0.0);
         for _ in 0..50 {
@@ -166,7 +167,7 @@ fn ratio_tracking_has_the_transmittance_as_its_mean() {
     let mut all = Vec::new();
     for (number, (name, scene)) in (0..).zip(heterogeneous()) {
         let volume = &scene.volumes[0];
-        let mut random = Random::new(5, number, 0);
+        let mut random = fresh::random(5, number, 0);
         let mut scores = Vec::new();
         while scores.len() < 100 {
             let ray = ray_through(volume, &mut random);
@@ -197,7 +198,7 @@ fn ratio_tracking_has_the_transmittance_as_its_mean() {
 fn the_fast_engine_collides_as_often_as_the_extinction_along_the_ray_says() {
     let mut all = Vec::new();
     for (number, (name, mut scene)) in (0..).zip(heterogeneous()) {
-        let mut random = Random::new(6, number, 0);
+        let mut random = fresh::random(6, number, 0);
         let mut scores = Vec::new();
         scene.resolution = [1, 1];
         scene.max_depth = Some(0);
@@ -239,7 +240,7 @@ fn segments_follow_each_other_and_their_bounds_hold() {
     for (name, scene) in heterogeneous() {
         let volume = &scene.volumes[0];
         let grid = grid(volume);
-        let mut random = Random::new(7, 0, 0);
+        let mut random = fresh::random(7, 0, 0);
         for _ in 0..300 {
             let local = volume.local_ray(&ray_through(volume, &mut random));
             let Some((enter, leave)) = volume.interval(&local, (0.0, f64::INFINITY)) else { continue };
@@ -270,7 +271,7 @@ fn no_voxel_around_a_point_exceeds_the_majorant_of_its_cell() {
         let grid = grid(&scene.volumes[0]);
         let origin = grid.origin();
         let [min, max] = grid.domain();
-        let mut random = Random::new(8, 0, 0);
+        let mut random = fresh::random(8, 0, 0);
         for _ in 0..100_000 {
             let u = DVec3::new(random.f64(), random.f64(), random.f64());
             let floor = (min + u * (max - min)).floor().as_ivec3().to_array();

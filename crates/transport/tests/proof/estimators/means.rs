@@ -1,6 +1,5 @@
 //! Every unbiased transmittance estimator has exp(−τ) as its mean, under every kind of bound that it is made for.
 
-use tyndall_lanes::Random;
 use tyndall_scene::Scene;
 use tyndall_transport::along_ray::{AlongRay, Bounding, Control, Profile};
 use tyndall_transport::{
@@ -9,6 +8,7 @@ use tyndall_transport::{
 
 use super::effort;
 use super::rays::{Tabulated, WHOLE, along, profiles, scenes};
+use crate::fresh;
 use crate::statistics::{kolmogorov_smirnov, normal_cdf, two_sided_quantile};
 
 /// Cell by cell, over the whole ray and loose, and with a majorant that is none where the estimator stands it.
@@ -36,7 +36,7 @@ fn rays<'a>(scenes: &'a [(&'static str, Scene)]) -> Vec<(&'static str, AlongRay<
         }
     }
     for (name, scene) in scenes {
-        let mut random = Random::new(3, 0, 0);
+        let mut random = fresh::random(3, 0, 0);
         for _ in 0..6 {
             let (_, ray) = along(scene, &mut random);
             let tau = Tabulated::new(&ray, 40_000).whole();
@@ -65,7 +65,8 @@ fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
                 if estimator.check(&ray).is_err() {
                     continue;
                 }
-                let found = repeat_transmittance(estimator, &ray, 2000 * effort(), scores.len() as u64);
+                let found =
+                    repeat_transmittance(estimator, &ray, 2000 * effort(), fresh::seed(scores.len() as u64));
                 if found.variance < 1e-18 {
                     // To the error of the quadrature, which is that of steps for voxels without a filter.
                     assert!(
@@ -99,7 +100,7 @@ fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
 fn the_roulette_of_the_p_series_makes_up_for_what_it_cuts() {
     let loose = Bounding { majorant_scale: 2.0, ..WHOLE };
     let ray = AlongRay::with_profile(Profile::Constant(0.005), 1.0, 1).with_bounding(loose);
-    let found = repeat_transmittance(TransmittanceEstimator::PSeriesCmf, &ray, 200_000, 6);
+    let found = repeat_transmittance(TransmittanceEstimator::PSeriesCmf, &ray, 200_000, fresh::seed(6));
     let z = found.z(f64::exp(-0.005));
     assert!(z.abs() < two_sided_quantile(1e-3), "{found:?}, z = {z}");
     assert!(found.lookups < 0.02, "{found:?}");
@@ -108,7 +109,7 @@ fn the_roulette_of_the_p_series_makes_up_for_what_it_cuts() {
 #[test]
 fn the_default_takes_the_closed_form_where_there_is_one_and_else_ratio_tracking() {
     for (name, scene) in scenes() {
-        let (ray, _) = along(&scene, &mut Random::new(4, 0, 0));
+        let (ray, _) = along(&scene, &mut fresh::random(4, 0, 0));
         for volume in &scene.volumes {
             let alone = std::slice::from_ref(volume);
             let Some(along) = AlongRay::through(alone, &ray, 8.0) else { continue };
@@ -118,7 +119,7 @@ fn the_default_takes_the_closed_form_where_there_is_one_and_else_ratio_tracking(
             } else {
                 TransmittanceEstimator::ClosedForm
             };
-            let [mut a, mut b] = [Random::new(5, 0, 0); 2];
+            let [mut a, mut b] = [fresh::random(5, 0, 0); 2];
             let default = estimate_transmittance(volume, &ray, (0.0, 8.0), &mut a);
             assert_eq!(default, estimator.estimate(&along, &mut b, &mut Lookups::default()), "{name}");
         }
@@ -134,7 +135,7 @@ fn names_lead_back_to_estimators_and_what_does_not_fit_is_refused_with_a_reason(
         assert_eq!(tyndall_transport::DistanceSampler::from_name(sampler.name()), Some(sampler));
     }
     let (_, scene) = scenes().remove(0);
-    let (_, ray) = along(&scene, &mut Random::new(4, 0, 0));
+    let (_, ray) = along(&scene, &mut fresh::random(4, 0, 0));
     let reason = TransmittanceEstimator::ClosedForm.check(&ray).unwrap_err().to_string();
     assert!(reason.contains("regular-tracking"), "{reason}");
     let loose = ray.with_bounding(Bounding { majorant_scale: 0.9, ..Bounding::default() });

@@ -8,6 +8,7 @@ use tyndall_transport::{Repeated, TransmittanceEstimator, repeat_transmittance};
 
 use super::effort;
 use super::rays::{WHOLE, integral, number, profiles, rows, table};
+use crate::fresh;
 use crate::statistics::{kolmogorov_smirnov, normal_cdf, two_sided_quantile};
 
 /// What is known of one estimator on one ray.
@@ -36,7 +37,7 @@ impl Family {
         let pilot = fourth.map_or((1.0 / known.variance).clamp(30.0, 3000.0), kurtosis);
         let samples = (100.0 * pilot).clamp(5_000.0, 2e6).min(1e7 / known.lookups) as u64 * effort();
         let seed = self.scores[0].len() as u64;
-        let found = repeat_transmittance(estimator, ray, samples, seed);
+        let found = repeat_transmittance(estimator, ray, samples, fresh::seed(seed));
         let n = samples as f64;
         if known.variance < 1e-12 * known.mean.powi(2) {
             // No variance: every sample is the truth.

@@ -17,6 +17,7 @@ fn measured(text: &str, seed: u64, photons: u64) -> Measurement {
     let scene = tyndall_scene::build(&description, Path::new("")).expect("a scene").scene;
     measure(&scene, &description.meters[0], &options(seed, photons), &AtomicBool::new(false))
         .expect("a meter that fits the scene")
+        .0
 }
 
 fn body(text: &str, seed: u64, photons: u64) -> BodyPowers {

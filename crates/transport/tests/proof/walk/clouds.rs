@@ -67,7 +67,7 @@ impl Experiment {
         let scene: Scene = tyndall_scene::build(&description, Path::new("")).expect("a scene").scene;
         let measured = measure(&scene, &description.meters[0], &options(1, photons), &AtomicBool::new(false));
         match measured {
-            Ok(Measurement::Layer(fluxes)) => fluxes,
+            Ok((Measurement::Layer(fluxes), _)) => fluxes,
             other => panic!("no layer: {other:?}"),
         }
     }

@@ -8,6 +8,7 @@ use tyndall_scene::{Density, Medium, Ray, Volume};
 use tyndall_transport::{estimate_transmittance, sample_distance};
 
 use super::{Family, henyey_greenstein, photons, rows};
+use crate::fresh;
 use crate::scenes::random_direction;
 use crate::statistics::mean_and_error;
 use tyndall_transport::walk::Estimate;
@@ -43,7 +44,7 @@ fn walks_go_as_far_as_their_asymmetry_says() {
         let volume = medium(Density::Everywhere, 1.0, henyey_greenstein(row[0]));
         let (mut z, mut squares, mut cosines) = (vec![], vec![], vec![]);
         for photon in 0..n {
-            let mut random = Random::new(seed as u64, 0, photon);
+            let mut random = fresh::random(seed as u64, 0, photon);
             let mut ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
             for collision in 0..row[1] as u32 {
                 if collision > 0 {
@@ -94,7 +95,7 @@ fn the_fluence_about_a_point_source_is_that_of_case_and_zweifel() {
         let albedo = rows[0][0];
         let mut fluences = vec![vec![]; rows.len()];
         for photon in 0..n {
-            let mut random = Random::new(seed, 1, photon);
+            let mut random = fresh::random(seed, 1, photon);
             let mut ray = Ray { origin: DVec3::ZERO, direction: random_direction(&mut random) };
             let mut sums: Vec<f64> = rows.iter().map(|row| row[3]).collect();
             loop {
@@ -126,7 +127,7 @@ fn light_born_in_an_absorbing_ball_escapes_as_often_as_case_de_hoffmann_and_plac
         let ball = medium(Density::Sphere, row[0], PhaseFunction::Isotropic);
         let escapes: Vec<f64> = (0..photons(1 << 14))
             .map(|photon| {
-                let mut random = Random::new(2, 0, photon);
+                let mut random = fresh::random(2, 0, photon);
                 let radius = row[0] * random.f64().cbrt();
                 let origin = random_direction(&mut random) * radius;
                 let ray = Ray { origin, direction: random_direction(&mut random) };

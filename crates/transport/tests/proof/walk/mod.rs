@@ -16,6 +16,7 @@ use tyndall_optics::PhaseFunction;
 use tyndall_transport::walk::{Estimate, Goal, Incidence, LayerFluxes, Slab, WalkOptions};
 
 use crate::effort::is_full;
+use crate::fresh;
 use crate::statistics::{kolmogorov_smirnov, normal_cdf, two_sided_quantile};
 
 /// `photons`, or sixteen times as many if `TYNDALL_PROOF` is `full`.
@@ -26,7 +27,7 @@ pub fn photons(photons: u64) -> u64 {
 /// So many photons on two threads.
 pub fn options(seed: u64, samples: u64) -> WalkOptions {
     let goal = Goal { samples, error: None, time: None };
-    WalkOptions { seed, stream: 0, threads: 2, goal }
+    WalkOptions { seed: fresh::seed(seed), stream: 0, threads: 2, goal }
 }
 
 /// Rows of numbers of a table; an absent one is NaN.

@@ -8,20 +8,33 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::error::FileError;
+/// A file that is being written, under another name than it will have.
+pub type Unfinished<'a> = BufWriter<&'a mut File>;
 
 /// Writes a file through `fill`, replacing what was there.
-pub fn write_atomically(
+///
+/// # Errors
+/// What `fill` returns, or why the file cannot be made, written or named; what was there is then as before.
+pub fn write_atomically<E: From<io::Error>>(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
-) -> Result<(), FileError> {
+    fill: impl FnOnce(&mut Unfinished<'_>) -> Result<(), E>,
+) -> Result<(), E> {
     let folder = folder_of(path);
-    write_beside(path, folder, fill).map_err(|source| match source.kind() {
+    let told = |error: io::Error| match error.kind() {
         io::ErrorKind::NotFound => {
-            FileError::unusable(path, format!("the folder {} does not exist; create it", folder.display()))
+            let what = format!("the folder {} does not exist; create it", folder.display());
+            io::Error::new(io::ErrorKind::NotFound, what)
         }
-        _ => FileError::io(path, source),
-    })
+        _ => error,
+    };
+    let mut temporary = temporary_file(path, folder).map_err(told)?;
+    let mut buffered = BufWriter::with_capacity(1 << 20, temporary.as_file_mut());
+    fill(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    temporary.as_file().sync_all()?;
+    temporary.persist(path).map_err(|error| told(error.error))?;
+    Ok(())
 }
 
 /// Removes what killed programs have left of writing to `path`. What another one is writing at this time stays; so does
@@ -66,28 +79,19 @@ fn temporary_prefix(path: &Path) -> String {
     format!(".tyndall-{}-", &name[..end])
 }
 
-fn write_beside(
-    path: &Path,
-    folder: &Path,
-    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
-) -> io::Result<()> {
+/// An empty file for the target `path`, which is removed unless it is given that name.
+fn temporary_file(path: &Path, folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     let prefix = temporary_prefix(path);
     builder.prefix(&prefix).suffix(SUFFIX).rand_bytes(RANDOM);
     // Temporary files are private by default; this one becomes a file like any other.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut temporary = builder.tempfile_in(folder)?;
+    let temporary = builder.tempfile_in(folder)?;
     // Where there are no locks, leftovers are not told from what is being written, and stay. Nobody else has this file, so
     // that there is nothing to wait for.
     let _ = temporary.as_file().try_lock();
-    let mut buffered = BufWriter::with_capacity(1 << 20, temporary.as_file_mut());
-    fill(&mut buffered)?;
-    buffered.flush()?;
-    drop(buffered);
-    temporary.as_file().sync_all()?;
-    temporary.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    Ok(temporary)
 }
 
 #[cfg(test)]
@@ -98,9 +102,9 @@ mod tests {
     fn a_failed_write_leaves_the_old_file_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture");
-        write_atomically(&path, |w| w.write_all(b"old")).unwrap();
-        let failure = write_atomically(&path, |w| {
-            w.write_all(b"half")?;
+        write_atomically(&path, |file| file.write_all(b"old")).unwrap();
+        let failure = write_atomically(&path, |file| {
+            file.write_all(b"half")?;
             Err(io::Error::other("the disk is full"))
         });
         assert!(failure.unwrap_err().to_string().ends_with("the disk is full"));
@@ -117,9 +121,9 @@ mod tests {
         {
             std::fs::write(folder.path().join(name), b"half").unwrap();
         }
-        write_atomically(&path, |w| {
+        write_atomically(&path, |file| {
             remove_leftovers(&path);
-            w.write_all(b"whole")
+            file.write_all(b"whole")
         })
         .unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");
@@ -137,7 +141,8 @@ mod tests {
     #[test]
     fn a_missing_folder_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let error = write_atomically(&folder.path().join("no/such/a.exr"), |_| Ok(())).unwrap_err();
+        let error =
+            write_atomically(&folder.path().join("no/such/a.exr"), |_| io::Result::Ok(())).unwrap_err();
         assert!(error.to_string().contains("no/such does not exist"), "{error}");
     }
 }

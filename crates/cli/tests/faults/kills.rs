@@ -1,13 +1,10 @@
 //! Killed at any time, without a chance to save, and resumed until done, a render has the bits of one that was left alone.
-#![cfg(unix)]
-
-mod command;
 
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
-use command::Folder;
+use crate::command::Folder;
 use tyndall_film::comparison::Picture;
 
 /// A ball of fog, which is quick to build, for some tenths of a second.
@@ -66,10 +63,9 @@ fn fifty_kills_at_random_times_change_no_bit() {
     let (mut kills, mut pictures) = (0, 0);
     let mut state = 6_u64;
     while kills < 50 || pictures == 0 {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let child = resume(&folder);
         // Most ends of these times fall into the render, some before it and some after.
-        std::thread::sleep(Duration::from_micros(20_000 + (state >> 33) % 180_000));
+        std::thread::sleep(Duration::from_micros(20_000 + next(&mut state) % 180_000));
         if was_killed(child) {
             kills += 1;
             // Whatever it was about: a checkpoint is whole, and of the leftovers of each target one at most remains.
@@ -84,6 +80,36 @@ fn fifty_kills_at_random_times_change_no_bit() {
     }
     assert!(resume(&folder).wait().unwrap().success());
     compare_and_clear(&folder);
+}
+
+/// Steps of a generator of numbers that look random.
+fn next(state: &mut u64) -> u64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    *state >> 33
+}
+
+#[test]
+fn a_kill_while_outputs_are_written_leaves_each_the_old_one_or_the_new_one() {
+    let folder = folder();
+    let names = ["out.exr", "out.png", "out.acc", "out.json"];
+    let merge = "merge whole.acc -o out.exr -o out.png -o out.acc -o out.json";
+    folder.done(merge);
+    let new = names.map(|name| folder.read(name));
+    let (mut kills, mut replaced, mut state) = (0, 0, 7);
+    while kills < 25 || replaced == 0 {
+        names.iter().for_each(|name| folder.write(name, "old"));
+        let child = folder.command(merge).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_micros(5_000 + next(&mut state) % 60_000));
+        kills += u32::from(was_killed(child));
+        for (name, new) in names.iter().zip(&new) {
+            let found = folder.read(name);
+            assert!(found == b"old" || found == *new, "{name} is neither");
+            replaced += u32::from(found == *new);
+        }
+    }
+    // The next run clears away what they left.
+    folder.done(merge);
+    assert_eq!(parts(&folder), 0, "{:?}", folder.names());
 }
 
 #[test]

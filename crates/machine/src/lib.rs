@@ -1,0 +1,18 @@
+//! What Tyndall takes of the machine it runs on: [memory] within a limit, [files] that have an end, and
+//! files of its own that are [whole](write_atomically).
+//!
+//! Whatever is about to take memory in proportion to its input asks [`memory::ask`] first, and whatever reads a file
+//! opens it with [`files::open`].
+
+#![forbid(unsafe_code)]
+
+mod atomic_write;
+mod control_group;
+pub mod files;
+mod limit;
+pub mod memory;
+mod process;
+mod size;
+
+pub use atomic_write::{Unfinished, remove_leftovers, write_atomically};
+pub use size::{parse_size, shown_size};
