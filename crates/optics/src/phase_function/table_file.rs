@@ -140,7 +140,7 @@ fn build(header: &Header, rows: &[(usize, Vec<f64>)]) -> Result<SpectralPhase, P
     let Some((first_line, first)) = rows.first() else {
         return refuse(None, "has no rows of numbers: give an angle in degrees and a value on each line");
     };
-    let columns = first.len() - 1;
+    let columns = first.len().saturating_sub(1);
     if columns == 0 {
         return refuse(Some(*first_line), "a row needs an angle in degrees and a value");
     }
