@@ -14,6 +14,7 @@ const MOST_PACKAGES: usize = 120;
 const UNSAFE: &[(&str, &str)] = &[
     ("crates/transport/src/wide.rs", "calls a function compiled for AVX2 after asking for it"),
     ("crates/transport/examples/roof.rs", "measures gather instructions"),
+    ("fuzz/src/memory.rs", "counts allocations, which takes an allocator"),
     ("crates/volumes/tests/vdb_corruption.rs", "counts allocations, which takes an allocator"),
 ];
 
