@@ -65,7 +65,7 @@ fn files_that_are_no_pictures_are_refused_in_one_line() {
         assert!(message.contains(expected) && !message.contains('\n'), "{message}");
         assert!(message.starts_with(&path.display().to_string()), "{message}");
     };
-    check(&folder.path().join("absent.exr"), "No such file");
+    check(&folder.path().join("absent.exr"), "no such file");
     let text = folder.path().join("text.exr");
     fs::write(&text, "hello").unwrap();
     check(&text, "is neither an OpenEXR (.exr) nor a Radiance (.hdr) picture");

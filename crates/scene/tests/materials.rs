@@ -242,7 +242,7 @@ fn pictures_that_are_none_are_refused_in_one_line() {
         ("text.png", "is neither a PNG"),
         ("empty.png", "is neither a PNG"),
         ("vast.png", ""),
-        ("absent.png", "No such file"),
+        ("absent.png", "no such file"),
     ] {
         let message = build_in(&picture(name, ""), folder.path()).unwrap_err();
         assert!(message.contains(name) && message.contains(part) && !message.contains('\n'), "{message}");

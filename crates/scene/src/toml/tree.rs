@@ -11,10 +11,10 @@ use crate::error::{Problem, SceneText};
 /// What messages call a tree as a whole.
 pub(crate) const ROOT: &str = "scene";
 
-/// The number as it counts: those nearer to 0 than 1e-30 are 0. Nothing is measured by them, and their reciprocals and
+/// The number as it counts: those nearer to 0 than 1e-37 are 0. Single floats hardly hold them, and their reciprocals and
 /// squares are lost in floating point.
 pub(crate) fn counted(number: f64) -> f64 {
-    if number.abs() < 1e-30 { 0.0 } else { number }
+    if number.abs() < 1e-37 { 0.0_f64.copysign(number) } else { number }
 }
 
 /// Bytes of a text.
