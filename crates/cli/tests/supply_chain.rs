@@ -75,7 +75,7 @@ fn allowed(key: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join("deny.toml")).unwrap();
     let after = text.split(&format!("\n{key} = [\n")).nth(1).unwrap();
     let lines = after.lines().take_while(|line| *line != "]");
-    lines.map(|line| line.split('"').nth(1).unwrap().to_owned()).collect()
+    lines.filter_map(|line| line.split('"').nth(1)).map(str::to_owned).collect()
 }
 
 /// Whether an SPDX expression can be met by the allowed licences.

@@ -44,5 +44,5 @@ pub fn import_mitsuba(
     let mut notes = Notes::default();
     let document = Document::read(path, parameters, &mut notes)?;
     let (description, notes) = Importer::new(&document, sidecar, notes).scene(path)?;
-    Ok(Imported { description, notes: notes.into_vec() })
+    Ok(Imported { description: description.with_counted_numbers(), notes: notes.into_vec() })
 }

@@ -85,6 +85,7 @@ pub fn import_pbrt(path: &Path, sidecar: &Sidecar) -> Result<Imported, ImportErr
     description.volumes = media.volumes;
     description.camera.inside = media.inside;
     description.shapes = shapes.into_iter().flatten().collect();
+    let description = description.with_counted_numbers();
     // What none of the parts can know of the others, such as a material mixed of too many.
     if let Some(violation) = description.violations().into_iter().next() {
         return Err(ImportError::of(&path, format!("{}: {}", violation.path.join("."), violation.message)));

@@ -7,7 +7,8 @@
 
 use serde_json::Value as Schema;
 
-use super::tree::{Entry, Node, Place, Value, counted};
+use super::counted::counted;
+use super::tree::{Entry, Node, Place, Value};
 use crate::description::{Dimension, dimension};
 use crate::error::Problem;
 use crate::suggestion::{did_you_mean, list_of, nearest};

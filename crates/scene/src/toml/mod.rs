@@ -5,6 +5,7 @@
 //! makes the description → its rules are checked. [`print`] is the way back.
 
 pub(crate) mod conformance;
+mod counted;
 mod document;
 mod print;
 pub(crate) mod schema;

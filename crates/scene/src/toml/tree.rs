@@ -6,16 +6,11 @@ use std::sync::Arc;
 use miette::NamedSource;
 use toml::de::{DeTable, DeValue};
 
+use super::counted::counted;
 use crate::error::{Problem, SceneText};
 
 /// What messages call a tree as a whole.
 pub(crate) const ROOT: &str = "scene";
-
-/// The number as it counts: those nearer to 0 than 1e-37 are 0. Single floats hardly hold them, and their reciprocals and
-/// squares are lost in floating point.
-pub(crate) fn counted(number: f64) -> f64 {
-    if number.abs() < 1e-37 { 0.0_f64.copysign(number) } else { number }
-}
 
 /// Bytes of a text.
 #[derive(Debug, Clone)]

@@ -5,6 +5,7 @@ use glam::DVec3;
 use tyndall_film::{Film, Layers};
 use tyndall_scene::Scene;
 use tyndall_scene::description::Integrator;
+use tyndall_scene::light::{Light, PointLight};
 use tyndall_transport::RenderOptions;
 
 use crate::agreement::{HEAD, assert_same_batches, batches};
@@ -219,7 +220,8 @@ fn scenes_of_other_kinds_go_to_the_integrator_in_f64() {
     );
     // What f32 cannot hold the squares of.
     let dense = chromatic(milk(), DVec3::new(1e30, 1.0, 1.0), None);
-    let far = even(MILK, "[[light]]\ntype = \"point\"\nposition = [0, 1e20, 0]\nintensity = 1e30");
+    let mut far = even(MILK, "[[light]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = 1");
+    far.lights[0] = Light::Point(PointLight::new(DVec3::Y * 1e20, DVec3::splat(1e30)));
     let others =
         [dense, far, glowing, two, droplets, atmosphere, image, floor, chromatic(crowd(), DVec3::ONE, None)];
     for (number, other) in others.iter().enumerate() {

@@ -56,7 +56,7 @@ impl Family {
                 self.scores[1].push((found.variance / known.variance - 1.0) / relative);
             }
         }
-        self.scores[2].push(lookup_score(&found, known.lookups));
+        self.scores[2].push(lookup_score(&found, known.lookups, n));
         for (kind, scores) in ["mean", "variance", "lookups"].iter().zip(&self.scores) {
             let z = scores.last().copied().unwrap_or(0.0);
             // At a level of 1e-3 for all of some 500 scores together.
@@ -74,8 +74,11 @@ impl Family {
     }
 }
 
-fn lookup_score(found: &Repeated, truth: f64) -> f64 {
-    (found.lookups - truth) / found.lookups_error()
+/// Lookups are whole numbers, so that those of mean m have a variance of f(1 − f) at least, f the fraction of m; where nearly
+/// all of them are the same, all of a few thousand may be, and tell none.
+fn lookup_score(found: &Repeated, truth: f64, samples: f64) -> f64 {
+    let fraction = truth.fract();
+    (found.lookups - truth) / found.lookups_error().max((fraction * (1.0 - fraction) / samples).sqrt())
 }
 
 /// A homogeneous ray of optical thickness `tau` and length 1.

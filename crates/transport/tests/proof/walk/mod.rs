@@ -89,7 +89,8 @@ impl Family {
     }
 
     /// Takes a fraction of the light that `photons` carried. Of small ones that few photons have made the own spread is
-    /// no guide, and they make no normal law; their error is that of a number of photons, which bring 1 each at most.
+    /// no guide, and they make no normal law; their error is that of a number of photons, which bring 1 each at most. So it is
+    /// with those of which few photons are missing, which take 1 each at most.
     pub fn add_fraction(
         &mut self,
         name: String,
@@ -99,10 +100,11 @@ impl Family {
         rare: &mut Family,
     ) {
         let n = photons as f64;
-        if truth * n > 300.0 {
+        if truth * n > 300.0 && (1.0 - truth) * n > 50.0 {
             return self.add(name, truth, 1e-6, result);
         }
-        let error = result.standard_error.max((truth / n).sqrt()).max(1.5 / n);
+        let few = truth.min(1.0 - truth).max(0.0);
+        let error = result.standard_error.max((few / n).sqrt()).max(1.5 / n);
         rare.add(name, truth, 1e-6, Estimate { standard_error: error, ..result });
     }
 

@@ -26,7 +26,9 @@ fn hold_against_table(name: &str, rows: &[Vec<f64>], make: impl Fn(&[f64]) -> Sl
                 // The table leaves the direction of the beam itself out.
                 if !truth.is_nan() {
                     let radiance = fluxes.radiance[side * rows.len() + number];
-                    family.add(name.clone(), truth, 1e-5 * truth, radiance);
+                    // What less than some ten photons bring may be brought by none, whose spread is none either.
+                    let unseen = if truth * (n as f64) < 10.0 { truth } else { 0.0 };
+                    family.add(name.clone(), truth, unseen.max(1e-5 * truth), radiance);
                 }
             }
         }
