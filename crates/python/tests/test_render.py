@@ -136,7 +136,8 @@ def test_what_few_pixels_have_seen_and_what_the_film_cannot_hold_is_told(ball: B
         picture = tyndall.render(scene, spp=16, progress=False)
     assert picture.unseen_light > 0.1 > picture.median_error and len(picture.warnings) == 1
     assert picture.accumulation.error_against(0.1) == pytest.approx(picture.unseen_light, rel=0.3)
-    scene["shape"] = [scene["shape"][0], {**lamp, "emission": {"radiance": 1e11}}]
+    del scene["shape"]
+    scene["volume"] = [{"sphere": lamp["sphere"], "mu_t": 0.001, "albedo": 0, "emission_per_length": 1e13}]
     scene["camera"] = {"position": [0, 6, 0], "target": [0, 9, 0], "up": [0, 0, 1]}
     with pytest.warns(UserWarning, match="are left out"):
         picture = tyndall.render(scene, spp=2, progress=False)

@@ -25,8 +25,12 @@ fn count_within(value: &mut Value) -> bool {
             let before = std::mem::replace(number, counted(*number));
             before.to_bits() != number.to_bits()
         }
-        Value::Array(values) => values.iter_mut().fold(false, |any, value| count_within(value) || any),
-        Value::Table(table) => table.iter_mut().fold(false, |any, (_, value)| count_within(value) || any),
+        Value::Array(values) => {
+            values.iter_mut().filter_map(|value| count_within(value).then_some(())).count() > 0
+        }
+        Value::Table(table) => {
+            table.iter_mut().filter_map(|(_, value)| count_within(value).then_some(())).count() > 0
+        }
         _ => false,
     }
 }
