@@ -15,7 +15,6 @@ const UNSAFE: &[(&str, &str)] = &[
     ("crates/transport/src/wide.rs", "calls a function compiled for AVX2 after asking for it"),
     ("crates/transport/examples/roof.rs", "measures gather instructions"),
     ("fuzz/src/memory.rs", "counts allocations, which takes an allocator"),
-    ("crates/volumes/tests/vdb_corruption.rs", "counts allocations, which takes an allocator"),
 ];
 
 fn root() -> PathBuf {
@@ -122,6 +121,17 @@ fn licences_sources_and_duplicates_are_as_allowed() {
     let count = versions.values().map(BTreeSet::len).sum::<usize>();
     println!("packages of others in the default build: {count}");
     assert!(count <= MOST_PACKAGES, "{count} packages of others, above {MOST_PACKAGES}");
+}
+
+#[test]
+fn cargo_run_in_the_root_means_the_command() {
+    let metadata = metadata();
+    let members = metadata["workspace_default_members"].as_array().unwrap();
+    let packages = members.iter().map(|id| package(&metadata, id.as_str().unwrap()));
+    // Of several packages with programs, cargo runs the one that names its own.
+    let named: Vec<&Value> =
+        packages.map(|package| &package["default_run"]).filter(|run| !run.is_null()).collect();
+    assert_eq!(named, ["tyndall"]);
 }
 
 #[test]
