@@ -7,7 +7,7 @@
 
 mod folder;
 pub mod limits;
-mod memory;
+pub mod memory;
 mod meshes;
 pub mod mutation;
 mod pictures;

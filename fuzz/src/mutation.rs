@@ -5,7 +5,8 @@
 pub struct Random(pub u64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -15,7 +16,7 @@ impl Random {
 
     /// A number below `end`; 0 if that is 0.
     pub fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
+        (self.bits() % end.max(1) as u64) as usize
     }
 }
 
@@ -98,7 +99,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
         }
         _ if random.below(4) == 0 => bytes.truncate(at),
         _ => {
-            bytes.iter_mut().skip(at).take(1 + random.below(16)).for_each(|byte| *byte = random.next() as u8)
+            bytes.iter_mut().skip(at).take(1 + random.below(16)).for_each(|byte| *byte = random.bits() as u8)
         }
     }
 }

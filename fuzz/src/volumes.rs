@@ -92,7 +92,7 @@ fn volume(name: &str, bytes: &[u8]) -> Outcome {
         Ok(file) => file,
         Err(error) => return Outcome::refused(&error),
     };
-    let content = grids.iter().map(memory).sum();
+    let content = grids.iter().map(|grid| grid.values.memory_bytes()).sum();
     for grid in &grids {
         grid.values.statistics();
         grid.values.probe(&[[0; 3], [i32::MIN; 3], [i32::MAX; 3]]);
@@ -108,19 +108,4 @@ fn volume(name: &str, bytes: &[u8]) -> Outcome {
         }
     }
     Outcome::Read(content)
-}
-
-/// Bytes that the values and the topology of a grid take.
-fn memory(grid: &Grid) -> usize {
-    fn tree<T>(tree: &Tree<T>) -> usize {
-        size_of_val(&*tree.leaf_values) + size_of_val(&*tree.leaves) + size_of_val(&*tree.tiles)
-    }
-    match &grid.values {
-        GridValues::Float(values) => tree(values),
-        GridValues::Double(values) => tree(values),
-        GridValues::Vec3(values) => tree(values),
-        GridValues::Int32(values) => tree(values),
-        GridValues::Int64(values) => tree(values),
-        GridValues::Bool(values) | GridValues::Mask(values) => tree(values),
-    }
 }

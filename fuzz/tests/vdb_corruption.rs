@@ -2,99 +2,29 @@
 //!
 //! Ten thousand files are damaged in memory, always in the same way, and every allocation is counted.
 
-// Counting allocations takes an allocator, and an allocator takes `unsafe`; it only passes calls on.
-#![allow(unsafe_code)]
-
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, MutexGuard};
+
+use tyndall_fuzz::memory::{alone, peak_of};
+use tyndall_fuzz::mutation::Random;
 use tyndall_volumes::vdb::{self, Codec, VdbFile, WriteOptions};
 use tyndall_volumes::{Grid, GridClass, GridSelection, GridValues, LEAF_VOXELS, Leaf, ReadError, Tree};
 
 const DAMAGED_FILES: usize = 10_000;
 const ALLOWANCE: usize = 64 << 20;
 
-struct Counting;
-
-static TAKEN: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-fn take(bytes: usize) {
-    PEAK.fetch_max(TAKEN.fetch_add(bytes, Relaxed) + bytes, Relaxed);
-}
-
-// SAFETY: every call goes to the system's allocator with the arguments it came with.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        take(layout.size());
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        take(layout.size());
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc_zeroed(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        TAKEN.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(memory, layout) }
-    }
-
-    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // The worst case: both are there while one is copied into the other.
-        take(size);
-        TAKEN.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.realloc(memory, layout, size) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
-
-/// The tests of this file take turns, so that each counts its own memory.
-fn alone() -> MutexGuard<'static, ()> {
-    static TURN: Mutex<()> = Mutex::new(());
-    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
 /// What reading gives, and the most memory it took at any time.
 fn measured(bytes: &[u8]) -> (Result<VdbFile, ReadError>, usize) {
-    let before = TAKEN.load(Relaxed);
-    PEAK.store(before, Relaxed);
-    let read = vdb::read_bytes(bytes, Path::new("damaged.vdb"), &GridSelection::All);
-    (read, PEAK.load(Relaxed) - before)
+    peak_of(|| vdb::read_bytes(bytes, Path::new("damaged.vdb"), &GridSelection::All))
 }
 
 fn corpus() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/volumes");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/volumes");
     if !folder.is_dir() {
         eprintln!("skipped: {} is not there", folder.display());
         return None;
     }
     Some(folder)
-}
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
 }
 
 fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
@@ -114,7 +44,7 @@ fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
             }
             5..=7 => {
                 let extremes: [u64; 8] =
-                    [0, 1, u64::MAX, 1 << 31, i32::MAX as u64, i64::MAX as u64, 1 << 32, random.next()];
+                    [0, 1, u64::MAX, 1 << 31, i32::MAX as u64, i64::MAX as u64, 1 << 32, random.bits()];
                 let value = extremes[random.below(8)].to_le_bytes();
                 let len = [4, 8][random.below(2)];
                 bytes.iter_mut().skip(at).take(len).zip(value).for_each(|(byte, value)| *byte = value);

@@ -62,6 +62,20 @@ pub enum GridValues {
     Mask(Tree<bool>),
 }
 
+impl GridValues {
+    /// Memory of its tree, bytes.
+    pub fn memory_bytes(&self) -> usize {
+        match self {
+            Self::Float(tree) => tree.memory_bytes(),
+            Self::Double(tree) => tree.memory_bytes(),
+            Self::Vec3(tree) => tree.memory_bytes(),
+            Self::Int32(tree) => tree.memory_bytes(),
+            Self::Int64(tree) => tree.memory_bytes(),
+            Self::Bool(tree) | Self::Mask(tree) => tree.memory_bytes(),
+        }
+    }
+}
+
 /// A sparse tree, flattened.
 ///
 /// Every voxel belongs to at most one leaf or tile; where there is neither it has the background value and is
@@ -76,6 +90,13 @@ pub struct Tree<T> {
     pub leaves: Vec<Leaf>,
     /// 512 values a leaf, in the order of `leaves`; voxel (x, y, z) of a leaf stands at `x << 6 | y << 3 | z`.
     pub leaf_values: Vec<T>,
+}
+
+impl<T> Tree<T> {
+    /// Memory of tiles, leaves and values, bytes.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(&*self.tiles) + size_of_val(&*self.leaves) + size_of_val(&*self.leaf_values)
+    }
 }
 
 /// Where a leaf is and which of its voxels are active.

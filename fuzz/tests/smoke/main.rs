@@ -7,18 +7,13 @@ mod seeds;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard};
 
+use tyndall_fuzz::memory::alone;
 use tyndall_fuzz::mutation::{Random, mutated};
 use tyndall_fuzz::{Outcome, TARGETS, Target};
 
 /// Mutations of each target; twenty times as many with `TYNDALL_PROOF=full`.
 const MUTATIONS: usize = 400;
-
-fn alone() -> MutexGuard<'static, ()> {
-    static TURN: Mutex<()> = Mutex::new(());
-    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
 
 /// The files of a target in `corpus` or `regressions`, by name.
 fn files(kind: &str, target: &Target) -> Vec<(PathBuf, Vec<u8>)> {

@@ -5,7 +5,7 @@ use super::header::{Descriptor, Header, MAGIC};
 use super::tree::{Storage, TreeType};
 use super::values::{ACTIVE_MASK, BLOSC, ZIP};
 use super::{metadata, transform};
-use crate::{Grid, GridSelection, GridValues, ReadError, Tree};
+use crate::{Grid, GridSelection, GridValues, ReadError};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -226,7 +226,7 @@ impl<'a> Archive<'a> {
         let (values, flags) = if left == 0 {
             shared
         } else {
-            let bytes = memory_bytes(&shared.0);
+            let bytes = shared.0.memory_bytes();
             if *copied + bytes > COPY_BUDGET {
                 trees.insert(owner, shared);
                 return Err(Problem::Unsupported(format!(
@@ -296,18 +296,4 @@ fn codec_name(flags: u32) -> String {
     let used: Vec<&str> =
         names.into_iter().filter(|(flag, _)| flags & flag != 0).map(|(_, name)| name).collect();
     if used.is_empty() { "none".to_owned() } else { used.join(" + ") }
-}
-
-fn memory_bytes(values: &GridValues) -> usize {
-    fn of<T>(tree: &Tree<T>) -> usize {
-        size_of_val(&*tree.tiles) + size_of_val(&*tree.leaves) + size_of_val(&*tree.leaf_values)
-    }
-    match values {
-        GridValues::Float(tree) => of(tree),
-        GridValues::Double(tree) => of(tree),
-        GridValues::Vec3(tree) => of(tree),
-        GridValues::Int32(tree) => of(tree),
-        GridValues::Int64(tree) => of(tree),
-        GridValues::Bool(tree) | GridValues::Mask(tree) => of(tree),
-    }
 }

@@ -141,7 +141,7 @@ impl GridWriter<'_> {
 
         out.clear();
         out.extend_from_slice(&self.options.codec.flags().to_le_bytes());
-        put_metadata(&self.metadata(&tree.tree.statistics(), half, tree.memory_bytes()), &mut out);
+        put_metadata(&self.metadata(&tree.tree.statistics(), half, tree.tree.memory_bytes()), &mut out);
         transform::write(&self.grid.index_to_world, &mut out);
         out.extend_from_slice(&1u32.to_le_bytes());
         sink.put(&out)?;

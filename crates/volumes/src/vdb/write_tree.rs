@@ -42,13 +42,6 @@ impl<'a, T: Value> TreeWriter<'a, T> {
         if self.encoding.half { value.rounded_to_half().unwrap_or(value) } else { value }
     }
 
-    /// Bytes of memory that the tree takes.
-    pub(super) fn memory_bytes(&self) -> usize {
-        size_of_val(&*self.tree.tiles)
-            + size_of_val(&*self.tree.leaves)
-            + size_of_val(&*self.tree.leaf_values)
-    }
-
     /// Background, root table, inner nodes and the masks of the leaves.
     pub(super) fn write_topology(&self, root: &Root, sink: &mut Sink) -> Result<(), Failure> {
         let mut out = Vec::new();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tyndall_volumes::{Codec, Grid, GridValues, ReadRequest, read_bytes, write};
+use tyndall_volumes::{Codec, ReadRequest, read_bytes, write};
 
 use crate::facts::{options, shared};
 use crate::nvdb_files::{file_of, grid_of, mixed_tree};
@@ -54,21 +54,6 @@ fn corrupt(file: &[u8], random: &mut Random) -> Vec<u8> {
     file
 }
 
-/// Bytes that the values and the topology of a grid take.
-fn memory(grid: &Grid) -> usize {
-    fn tree<T>(tree: &tyndall_volumes::Tree<T>) -> usize {
-        size_of_val(&*tree.leaf_values) + size_of_val(&*tree.leaves) + size_of_val(&*tree.tiles)
-    }
-    match &grid.values {
-        GridValues::Float(values) => tree(values),
-        GridValues::Double(values) => tree(values),
-        GridValues::Vec3(values) => tree(values),
-        GridValues::Int32(values) => tree(values),
-        GridValues::Int64(values) => tree(values),
-        GridValues::Bool(values) | GridValues::Mask(values) => tree(values),
-    }
-}
-
 #[track_caller]
 fn survive(name: &str, file: &[u8], rounds: usize, seed: u64) {
     let mut random = Random(seed);
@@ -78,7 +63,7 @@ fn survive(name: &str, file: &[u8], rounds: usize, seed: u64) {
         match read_bytes(&damaged, Path::new(name), &ReadRequest::default()) {
             Ok(found) => {
                 read += 1;
-                let taken: usize = found.grids.iter().map(memory).sum();
+                let taken: usize = found.grids.iter().map(|grid| grid.values.memory_bytes()).sum();
                 assert!(taken < (64 << 20) + 16 * damaged.len(), "{name}, round {round}: {taken} bytes");
             }
             Err(error) => {
