@@ -18,7 +18,7 @@ impl<'a> RadiusGrid<'a> {
     /// A grid over all particles that matter.
     pub(super) fn new(distribution: &'a SizeDistribution) -> Self {
         let [middle, width] = distribution.log_peak();
-        let ends = distribution.log_range().map(|log_r| ((log_r - middle) / width).asinh());
+        let ends = distribution.log_range().map(|log_r| libm::asinh((log_r - middle) / width));
         Self { distribution, middle, width, ends }
     }
 

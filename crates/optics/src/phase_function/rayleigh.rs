@@ -10,5 +10,5 @@ pub(super) fn value(cos_theta: f64) -> f64 {
 }
 
 pub(super) fn sample(u: f64) -> f64 {
-    2.0 * libm::sinh((4.0 * u - 2.0).asinh() / 3.0)
+    2.0 * libm::sinh(libm::asinh(4.0 * u - 2.0) / 3.0)
 }

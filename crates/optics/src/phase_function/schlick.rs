@@ -19,7 +19,7 @@ pub(super) fn sample(k: f64, u: f64) -> f64 {
 /// 1/k − (1 − k²) artanh(k)/k² = Σ 2 k^{2n−1}/((2n − 1)(2n + 1)); the sum where the closed form would cancel.
 pub(super) fn mean_cosine(k: f64) -> f64 {
     if k.abs() > 0.1 {
-        return 1.0 / k - (1.0 - k * k) * k.atanh() / (k * k);
+        return 1.0 / k - (1.0 - k * k) * libm::atanh(k) / (k * k);
     }
     (1..10).map(|n| 2.0 * k.powi(2 * n - 1) / f64::from((2 * n - 1) * (2 * n + 1))).sum()
 }

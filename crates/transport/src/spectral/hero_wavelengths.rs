@@ -25,7 +25,7 @@ const WIDTH_NM: f64 = 1.0 / 0.0072;
 pub(super) fn sample(u: f64) -> (f64, f64) {
     let [low, high] = [cie::FIRST_NM, cie::LAST_NM].map(|nm| libm::tanh((nm - CENTRE_NM) / WIDTH_NM));
     let tanh = low + u * (high - low);
-    let wavelength = (CENTRE_NM + WIDTH_NM * tanh.atanh()).clamp(cie::FIRST_NM, cie::LAST_NM);
+    let wavelength = (CENTRE_NM + WIDTH_NM * libm::atanh(tanh)).clamp(cie::FIRST_NM, cie::LAST_NM);
     (wavelength, (1.0 - tanh * tanh) / (WIDTH_NM * (high - low)))
 }
 
