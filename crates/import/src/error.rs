@@ -44,11 +44,5 @@ impl Display for ImportError {
 
 /// A message that may quote what a scene says, which may be of any length and hold line breaks.
 pub(crate) fn one_line(message: &str) -> String {
-    const LONGEST: usize = 1000;
-    let mut line: String =
-        message.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if message.chars().nth(LONGEST).is_some() {
-        line.push('…');
-    }
-    line
+    tyndall_machine::one_line(message, 1000)
 }

@@ -1,5 +1,6 @@
 //! What Tyndall takes of the machine it runs on: [memory] within a limit, [files] that have an end, and
-//! files of its own that are [whole](write_atomically).
+//! files of its own that are [whole](write_atomically). Beside it, what messages about files have in common: [sizes](shown_size) and
+//! [text](one_line).
 //!
 //! Whatever is about to take memory in proportion to its input asks [`memory::ask`] first, and whatever reads a file
 //! opens it with [`files::open`].
@@ -11,8 +12,10 @@ mod control_group;
 pub mod files;
 mod limit;
 pub mod memory;
+mod one_line;
 mod process;
 mod size;
 
 pub use atomic_write::{Unfinished, remove_leftovers, write_atomically};
+pub use one_line::one_line;
 pub use size::{parse_size, shown_size};

@@ -74,13 +74,7 @@ impl Problem {
 
 /// Messages quote what the file says, which may hold line breaks as escapes and be of any length.
 fn one_line(message: impl Into<String>) -> String {
-    const LONGEST: usize = 1000;
-    let mut line = message.into().replace(char::is_control, " ");
-    if let Some((end, _)) = line.char_indices().nth(LONGEST) {
-        line.truncate(end);
-        line.push('…');
-    }
-    line
+    tyndall_machine::one_line(&message.into(), 1000)
 }
 
 impl From<Problem> for SceneError {

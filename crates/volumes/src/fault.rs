@@ -49,14 +49,12 @@ impl From<MemoryError> for Fault {
     }
 }
 
-/// A text as part of a message: names in a damaged file may be of any length and hold line breaks.
+/// Letters of a text of a file in a message at most.
+const LONGEST: usize = 500;
+
+/// A text of a file as part of a message.
 pub(crate) fn one_line(text: &str) -> String {
-    const LONGEST: usize = 500;
-    let mut line: String = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        line.push('…');
-    }
-    line
+    tyndall_machine::one_line(text, LONGEST)
 }
 
 /// An early end and undecodable compressed data are damage, not failures of the system.

@@ -79,9 +79,5 @@ pub(super) fn sampled(wavelengths: Vec<f64>, values: Vec<f64>) -> Result<Value, 
 
 /// The beginning of a text, for messages of one line.
 pub(super) fn excerpt(text: &str) -> String {
-    let mut short: String = text.chars().take(40).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(40).is_some() {
-        short.push('…');
-    }
-    short
+    tyndall_machine::one_line(text, 40)
 }

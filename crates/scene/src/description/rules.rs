@@ -247,9 +247,9 @@ fn volume(found: &mut Findings, volume: &VolumeDescription, unit: &str) {
     medium_rules(found, &volume.medium, unit);
     if let (Some(emission), Some(scale)) = (&volume.medium.emission, volume.emission_scale)
         && let Ok(light) = emission.light()
-        && scale * light.light_rgb().max_element() > BRIGHTEST
+        && let brightest = scale * light.light_rgb().max_element()
+        && brightest > BRIGHTEST
     {
-        let brightest = scale * light.light_rgb().max_element();
         found.report("emission_scale", too_bright("emission_scale", brightest));
     }
     fields(found, volume);
