@@ -5,9 +5,10 @@
 //! its pixel and its place goes to the next path. Paths do not touch each other and draw from random numbers of
 //! their own, so the picture does not depend on who shared a pool with whom.
 //!
-//! It differs from the reference in four ways, none of which changes an expected value: one random voxel in place of
-//! eight interpolated (see [`march`]), f32 relative to the scene's centre, roulette before shadow rays ([`next_event`]), and,
-//! in thin grids, camera rays that bring light from every tentative collision ([`gather`]).
+//! It differs from the reference in five ways, none of which changes an expected value: one random voxel in place of
+//! eight interpolated (see [`march`]), f32 relative to the scene's centre, roulette before shadow rays ([`next_event`]),
+//! in thin grids camera rays that bring light from every tentative collision ([`gather`]), and paths that split around
+//! fires ([`split`]).
 //!
 //! Scenes of one homogeneous medium, or none, need no march and are traced otherwise ([`homogeneous`]).
 
@@ -19,6 +20,7 @@ mod march;
 mod next_event;
 mod pool;
 mod sided;
+mod split;
 mod volume;
 mod work;
 
@@ -33,9 +35,10 @@ use crate::path_layers::FirstMet;
 use crate::render::RenderOptions;
 use crate::roulette::survival;
 use crate::shadow_catcher;
+use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, is_plain};
 use crate::wide;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use march::List;
 use next_event::choose_direct;
 pub(crate) use pool::Pixel;
@@ -210,7 +213,7 @@ impl<'a> Engine<'a> {
                         None => self.escape(slot),
                     }
                 }
-                Next::Record => match self.resume(slot) {
+                Next::Record => match self.branch(slot).or_else(|| self.resume(slot)) {
                     Some(next) => next,
                     None => {
                         self.record(slot);
@@ -417,18 +420,30 @@ impl<'a> Engine<'a> {
             direct => direct.is_some(),
         };
 
-        let before = path.direction;
-        path.direction = volume.phase.sample(before, path.draws.direction(random));
-        path.draws = FirstDraws::Independent;
-        path.turn_pdf = volume.phase.value(before, path.direction);
-        path.turned = Some(here);
-        if let Some(sided) = self.sided.get_mut(slot) {
-            sided.ray.direction = path.direction.as_dvec3().normalize();
+        if path.turns == 1 && !gathered {
+            self.split(slot, number, None);
         }
+        self.turn_in(slot, number, here);
+        let (path, random) = (&mut self.paths[slot], &mut self.rays.random[slot]);
         if gathered && !survives_roulette(path, refraction, self.scene.roulette_throughput, random) {
             path.throughput = Vec3::ZERO;
         }
         self.turned(slot, traced)
+    }
+
+    /// The path goes on in another direction from `here`, where it is, in the volume of this number.
+    #[inline(always)]
+    fn turn_in(&mut self, slot: usize, number: usize, here: DVec3) {
+        let (path, random) = (&mut self.paths[slot], &mut self.rays.random[slot]);
+        let phase = &self.scene.volumes[number].phase;
+        let before = path.direction;
+        path.direction = phase.sample(before, path.draws.direction(random));
+        path.draws = FirstDraws::Independent;
+        path.turn_pdf = phase.value(before, path.direction);
+        path.turned = Some(here);
+        if let Some(sided) = self.sided.get_mut(slot) {
+            sided.ray.direction = path.direction.as_dvec3().normalize();
+        }
     }
 
     /// What a path does next that has turned, or been ended by roulette: its shadow ray first, if there is one.
@@ -496,8 +511,21 @@ impl<'a> Engine<'a> {
             }
         }
 
-        path.draws = FirstDraws::Independent;
         path.position = (vertex.position() - self.scene.centre).as_vec3();
+        if path.turns == 1 && !vertex.is_delta() {
+            self.split(slot, 0, Some(&vertex));
+        }
+        self.turn_at(slot, &vertex);
+        let traced = traced || self.next_light(slot);
+        self.turned(slot, traced)
+    }
+
+    /// The path goes on in another direction from the surface where it is, or ends there.
+    #[inline(always)]
+    fn turn_at(&mut self, slot: usize, vertex: &SurfaceVertex) {
+        let (path, sided) = (&mut self.paths[slot], &mut self.sided[slot]);
+        let random = &mut self.rays.random[slot];
+        path.draws = FirstDraws::Independent;
         let onward = vertex.sample(random).filter(|onward| {
             path.throughput *= onward.weight.truncate().as_vec3();
             sided.refraction *= onward.radiance_scale;
@@ -508,12 +536,11 @@ impl<'a> Engine<'a> {
                 path.direction = onward.direction.as_vec3();
                 path.turned = onward.pdf.map(|_| vertex.position());
                 path.turn_pdf = onward.pdf.unwrap_or_default() as f32;
-                (sided.ray, sided.presence) = vertex.leave(scene, onward.direction, &sided.presence);
+                (sided.ray, sided.presence) =
+                    vertex.leave(self.scene.scene, onward.direction, &sided.presence);
             }
             None => path.throughput = Vec3::ZERO,
         }
-        let traced = traced || self.next_light(slot);
-        self.turned(slot, traced)
     }
 
     /// Turns to a light that waits to be looked at from the path's surface, if there is one.

@@ -12,6 +12,7 @@ use crate::found_light::Turned;
 use crate::path_layers::FirstMet;
 
 use super::gather::Gathered;
+use super::split::Fork;
 
 /// Paths in flight on a thread: enough that the loads of some hide behind the work of others.
 pub(super) const POOL: usize = 512;
@@ -137,6 +138,8 @@ pub(super) struct Path {
     pub first: Option<FirstMet>,
     /// What it has gathered.
     pub gathered: Gathered,
+    /// Where it has split.
+    pub fork: Fork,
 }
 
 impl Path {

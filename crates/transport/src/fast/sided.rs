@@ -8,6 +8,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
+use super::split::SidedFork;
 use crate::emission::{Glow, draw_glow, path_weight, source_at};
 use crate::first_draws::FirstDraws;
 use crate::surface_vertex::SurfaceVertex;
@@ -28,6 +29,8 @@ pub(super) struct Sided {
     pub refraction: f64,
     /// Lights that are still to be looked at from the surface: what each may bring, its direction and distance.
     pub waiting: Vec<(Vec3, Vec3, f32)>,
+    /// Where the path has split.
+    pub fork: Option<SidedFork>,
     /// Whether the scene's surfaces are [plain](crate::way::is_plain).
     is_plain: bool,
 }
@@ -52,7 +55,7 @@ pub(super) struct Direct {
     pub light: usize,
     /// Radiance times what the vertex makes of it, over the densities; without what is in the way.
     pub unshadowed: Vec3,
-    /// The light alone, over its density: what an even vertex without competition would bring.
+    /// The light alone, with its weight and over its density: what an even vertex would bring.
     pub arriving: Vec3,
     /// Whether a medium sent it out.
     pub is_glow: bool,
@@ -65,7 +68,7 @@ impl Sided {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
         let presence = Presence::default();
         let [way, shadow] = [Way::nothing(), Way::nothing()];
-        Self { ray, presence, way, shadow, refraction: 1.0, waiting: Vec::new(), is_plain }
+        Self { ray, presence, way, shadow, refraction: 1.0, waiting: Vec::new(), fork: None, is_plain }
     }
 
     /// Where the volumes are that the current ray goes through; `None` if all are present all the way.
@@ -163,8 +166,8 @@ pub(super) fn light_of(
         let (value, path_pdf) = value(toward);
         let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
         let source = source_at(&scene.volumes[glow.volume()], position, toward);
-        let arriving = source / (density * probability);
-        let unshadowed = (value * arriving * weight).as_vec3();
+        let arriving = source * (weight / (density * probability));
+        let unshadowed = (value * arriving).as_vec3();
         let arriving = arriving.as_vec3();
         return Some(Direct { light: number, unshadowed, arriving, is_glow: true, toward, distance });
     }
@@ -172,8 +175,8 @@ pub(super) fn light_of(
     let (value, path_pdf) = value(sample.toward);
     let light_pdf = probability * sample.pdf;
     let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + path_pdf) };
-    let arriving = sample.radiance_over_pdf / probability;
-    let unshadowed = (value * arriving * weight).as_vec3();
+    let arriving = sample.radiance_over_pdf * (weight / probability);
+    let unshadowed = (value * arriving).as_vec3();
     let (arriving, toward) = (arriving.as_vec3(), sample.toward);
     Some(Direct { light: number, unshadowed, arriving, is_glow: false, toward, distance: sample.distance })
 }

@@ -10,6 +10,7 @@ use super::gather;
 use super::homogeneous::Homogeneous;
 use super::light_cache::LightCache;
 use super::pool::Path;
+use super::split;
 use crate::emission::path_weight;
 
 /// Throughput below which paths play roulette in most scenes.
@@ -33,6 +34,8 @@ pub(crate) struct FastScene<'a> {
     pub(super) gathers: bool,
     /// Throughput below which paths play roulette; survivors get twice this.
     pub(super) roulette_throughput: f32,
+    /// Into how many branches paths split where they first turn.
+    pub(super) branches: u32,
     /// The scene without a pool, if it is homogeneous.
     pub(super) homogeneous: Option<Homogeneous<'a>>,
 }
@@ -85,6 +88,8 @@ impl<'a> FastScene<'a> {
         let light_cache = LightCache::new(scene, centre);
         let gathers = light_cache.as_ref().is_some_and(|cache| gather::pays(scene, &volumes, cache));
         let roulette_throughput = if gathers { gather::ROULETTE_THROUGHPUT } else { ROULETTE_THROUGHPUT };
+        let branches = split::branches(scene);
+        let roulette_throughput = roulette_throughput / branches as f32;
         FastScene {
             scene,
             centre,
@@ -95,6 +100,7 @@ impl<'a> FastScene<'a> {
             light_cache,
             gathers,
             roulette_throughput,
+            branches,
             homogeneous,
         }
     }

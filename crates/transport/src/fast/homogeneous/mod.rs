@@ -8,8 +8,8 @@
 //! every ray gets an estimate of the first term as far as light is concerned that is scattered there once ([`lit_way`]), and
 //! that of a lamp or of the surroundings at its end times T; the camera's ray also T times what the surface reflects of the
 //! lamps. Only where the path goes on, for light that has turned more often, is chosen: a collision, drawn with density μt T,
-//! or the surface. Half of the directions in which it does aim at the light around lamps ([`aim`]). The reference integrator
-//! leaves all of this to chance, and has the same mean.
+//! or the surface; from the camera's ray it goes on in several branches. Half of the directions aim at the light around lamps
+//! ([`aim`]). The reference integrator leaves all of this to chance, and has the same mean.
 //!
 //! There is nothing to march through, and thus no pool: one path after the other, each from its start to its end.
 
@@ -37,8 +37,12 @@ use crate::surface_vertex::{SurfaceTurn, SurfaceVertex};
 use crate::way::is_plain;
 use crate::wide;
 
-/// Throughput below which roulette is played; survivors get twice this.
+/// Throughput of a branch, relative to its beginning, below which roulette is played; survivors get twice this.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
+
+/// Branches into which the camera's ray splits: its own light is known well, and what comes after brings the noise. Variance
+/// times time of scene C is 0.86 with 1 branch, 0.65 with 4, 0.58 with 8 and 0.67 with 16.
+const BRANCHES: u32 = 8;
 
 /// Candidates for light scattered once towards the camera, and on later rays.
 const FIRST: usize = 4;
@@ -107,89 +111,116 @@ impl Homogeneous<'_> {
     /// One estimate of the radiance that arrives along `ray`.
     #[inline(always)]
     fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
-        let scene = self.scene;
         let mut layers = PathLayers::<Vec3>::default();
-        let mut path = Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None };
-        let (mut turns, mut scatterings) = (0, 0);
-        loop {
-            let may_turn = scene.max_depth.is_none_or(|depth| turns < depth);
-            let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
-            let end = met.as_ref().map_or(f64::INFINITY, Meeting::distance);
-            let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
-            let through = path.throughput * stretch.through;
-            // What the path passes by in the end need not be known, but if it shines.
-            let collision = stretch.collision(random);
-            let matters = |met: &Meeting| {
-                turns == 0 || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
-            };
-            let hit = met.as_ref().filter(|met| matters(met)).map(|met| scene.surfaces.hit(&path.ray, met));
-            match &hit {
-                Some(hit) => layers.add(scatterings, through * self.lamp(hit, &path)),
-                None if met.is_none() => layers.add(scatterings, through * self.surroundings(&path)),
-                None => {}
-            }
-
-            if turns == 0 {
-                let collision = collision.map(|t| stretch.start + f64::from(t));
-                layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
-            }
-            if !may_turn {
-                break;
-            }
-            if let Some(fog) = &self.fog {
-                let lit = if turns == 0 {
-                    self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random)
-                } else {
-                    self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random)
-                };
-                layers.add(scatterings + 1, path.throughput * lit);
-            }
-            let vertex = hit
-                .filter(|_| turns == 0 || collision.is_none())
-                .map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
-            if let Some(vertex) = &vertex {
-                // Towards the camera with the weight of what gets through, later as often as the path does.
-                let weight = if turns == 0 { through } else { path.throughput };
-                layers.add(scatterings, weight * self.reflected(vertex, random));
-            }
-
-            turns += 1;
-            match (collision, &self.fog, &vertex) {
-                (Some(t), Some(fog), _) => {
-                    path.throughput *= fog.albedo;
-                    if !path.survives_roulette(turns, random) {
-                        break;
-                    }
-                    scatterings += 1;
-                    let before = path.ray.direction.as_vec3();
-                    let position = stretch.ray.at(f64::from(t));
-                    let aim = self.lamps.targets.from(position, stretch.mu_t);
-                    let onward = aim.sample(random);
-                    let onward = onward.unwrap_or_else(|| fog.phase.sample(before, random.f32x2()));
-                    let value = fog.phase.value(before, onward);
-                    path.throughput *= value / aim.pdf(onward, value);
-                    let pdf = f64::from(value);
-                    let candidates = if turns == 1 { FIRST } else { LATER };
-                    path.turn = Turn::Collision { stretch, t, pdf, candidates };
-                    path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
+        let path =
+            Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None, turns: 0, scatterings: 0 };
+        if let Some(first) = self.follow(path, &mut layers, random) {
+            for branch in 0..BRANCHES {
+                let mut next = self.turn(&first, branch, random);
+                while let Some(path) = next {
+                    let end = self.follow(path, &mut layers, random);
+                    next = end.and_then(|end| self.turn(&end, 0, random));
                 }
-                (_, _, Some(vertex)) => {
-                    let Some(onward) = self.leave(vertex, random) else { break };
-                    path.throughput *= onward.weight.truncate().as_vec3();
-                    path.refraction *= onward.radiance_scale;
-                    if !path.survives_roulette(turns, random) {
-                        break;
-                    }
-                    path.turn = match onward.pdf {
-                        Some(pdf) => Turn::Surface { from: vertex.position(), pdf },
-                        None => Turn::None,
-                    };
-                    path.ray = vertex.depart(onward.direction);
-                }
-                _ => break,
             }
         }
         layers.into_sample(|colour| colour.as_dvec3())
+    }
+
+    /// Follows the path's ray to its end and adds the light that it passes; where it ends, if it may go on from there.
+    #[inline(always)]
+    fn follow(&self, path: Path, layers: &mut PathLayers<Vec3>, random: &mut Random) -> Option<End> {
+        let scene = self.scene;
+        let is_first = path.turns == 0;
+        let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
+        let end = met.as_ref().map_or(f64::INFINITY, Meeting::distance);
+        let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
+        let through = path.throughput * stretch.through;
+        // What the path passes by in the end need not be known, but if it shines.
+        let u = 1.0 - random.f32();
+        let collision = stretch.collision(u);
+        let matters = |met: &Meeting| {
+            is_first || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
+        };
+        let hit = met.as_ref().filter(|met| matters(met)).map(|met| scene.surfaces.hit(&path.ray, met));
+        match &hit {
+            Some(hit) => layers.add(path.scatterings, through * self.lamp(hit, &path)),
+            None if met.is_none() => layers.add(path.scatterings, through * self.surroundings(&path)),
+            None => {}
+        }
+        if is_first {
+            let collision = collision.map(|t| stretch.start + f64::from(t));
+            layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
+        }
+        if scene.max_depth.is_some_and(|depth| path.turns >= depth) {
+            return None;
+        }
+        if let Some(fog) = &self.fog {
+            let lit = if is_first {
+                self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random)
+            } else {
+                self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random)
+            };
+            layers.add(path.scatterings + 1, path.throughput * lit);
+        }
+        let vertex = hit
+            .filter(|_| is_first || collision.is_none())
+            .map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
+        if let Some(vertex) = &vertex {
+            // Towards the camera with the weight of what gets through, later as often as the path does.
+            let weight = if is_first { through } else { path.throughput };
+            layers.add(path.scatterings, weight * self.reflected(vertex, random));
+        }
+        Some(End { path, stretch, vertex, u })
+    }
+
+    /// How the path goes on, of the camera's the branch of this number: from a collision, drawn with density μt T, or the surface;
+    /// `None` if it ends there.
+    #[inline(always)]
+    fn turn(&self, end: &End, branch: u32, random: &mut Random) -> Option<Path> {
+        let End { path, stretch, vertex, u } = end;
+        let mut path = *path;
+        let mut u = *u;
+        if path.turns == 0 {
+            path.throughput /= BRANCHES as f32;
+            u = (u + branch as f32) / BRANCHES as f32;
+        }
+        let collision = stretch.collision(u);
+        path.turns += 1;
+        match (collision, &self.fog, vertex) {
+            (Some(t), Some(fog), _) => {
+                path.throughput *= fog.albedo;
+                if !path.survives_roulette(random) {
+                    return None;
+                }
+                path.scatterings += 1;
+                let before = path.ray.direction.as_vec3();
+                let position = stretch.ray.at(f64::from(t));
+                let aim = self.lamps.targets.from(position, stretch.mu_t);
+                let onward = aim.sample(random);
+                let onward = onward.unwrap_or_else(|| fog.phase.sample(before, random.f32x2()));
+                let value = fog.phase.value(before, onward);
+                path.throughput *= value / aim.pdf(onward, value);
+                let pdf = f64::from(value);
+                let candidates = if path.turns == 1 { FIRST } else { LATER };
+                path.turn = Turn::Collision { stretch: *stretch, t, pdf, candidates };
+                path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
+            }
+            (_, _, Some(vertex)) => {
+                let onward = self.leave(vertex, random)?;
+                path.throughput *= onward.weight.truncate().as_vec3();
+                path.refraction *= onward.radiance_scale;
+                if !path.survives_roulette(random) {
+                    return None;
+                }
+                path.turn = match onward.pdf {
+                    Some(pdf) => Turn::Surface { from: vertex.position(), pdf },
+                    None => Turn::None,
+                };
+                path.ray = vertex.depart(onward.direction);
+            }
+            _ => return None,
+        }
+        Some(path)
     }
 
     /// How the path goes on from a surface.
@@ -282,16 +313,30 @@ impl Homogeneous<'_> {
     }
 }
 
+/// The end of a path's ray.
+struct End {
+    path: Path,
+    stretch: Stretch,
+    /// The surface there, if the path may come to it.
+    vertex: Option<SurfaceVertex>,
+    /// Number in (0, 1] by which collisions are drawn; those of several branches are spread evenly.
+    u: f32,
+}
+
 /// A path under way.
+#[derive(Clone, Copy)]
 struct Path {
     ray: Ray,
     throughput: Vec3,
     /// The part of the throughput that is due to refraction, which roulette leaves out.
     refraction: f64,
     turn: Turn,
+    turns: u32,
+    scatterings: u32,
 }
 
 /// How a path turned last.
+#[derive(Clone, Copy)]
 enum Turn {
     /// Not at all, or at a mirror: nothing else finds what it finds.
     None,
@@ -313,9 +358,9 @@ impl Path {
 
     /// Ends a weak path with a probability that its survivors' weight makes up for.
     #[inline(always)]
-    fn survives_roulette(&mut self, turns: u32, random: &mut Random) -> bool {
-        let strength = f64::from(self.throughput.max_element()) / self.refraction;
-        let probability = survival(strength, ROULETTE_THROUGHPUT, turns);
+    fn survives_roulette(&mut self, random: &mut Random) -> bool {
+        let strength = f64::from(self.throughput.max_element() * BRANCHES as f32) / self.refraction;
+        let probability = survival(strength, ROULETTE_THROUGHPUT, self.turns);
         if probability < 1.0 && random.f64() >= probability {
             return false;
         }

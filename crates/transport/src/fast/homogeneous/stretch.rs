@@ -3,7 +3,6 @@
 //! Distances are measured from where the ray enters the medium. So f32 is enough for them, however far away that is.
 
 use glam::{DVec3, Vec3};
-use tyndall_lanes::Random;
 use tyndall_scene::{Density, Ray, Volume};
 
 use crate::fast::volume::Phase;
@@ -75,13 +74,13 @@ impl Stretch {
         Self { ray, start, length, mu_t, through: beer(mu_t, length) }
     }
 
-    /// The distance of a collision, drawn with density μt T; `None` if the ray gets through.
+    /// The distance of a collision, for `u` uniform in (0, 1], drawn with density μt T; `None` if the ray gets through.
     #[inline(always)]
-    pub fn collision(&self, random: &mut Random) -> Option<f32> {
+    pub fn collision(&self, u: f32) -> Option<f32> {
         if self.length <= 0.0 {
             return None;
         }
-        let t = random.exponential() / self.mu_t;
+        let t = -tyndall_lanes::ln(u) / self.mu_t;
         (t < self.length).then_some(t)
     }
 

@@ -1,0 +1,98 @@
+//! Paths that split where they turn first.
+//!
+//! Where a fire is looked at, or a floor beside it, most of the noise is of light that turns more than once: few directions lead
+//! to where the smoke is bright, while the first turn is drawn evenly over the pixel. So a path goes on from there in several
+//! branches, one after the other, each with its share of the weight (Arvo & Kirk 1990, "Particle transport and image synthesis").
+//!
+//! With v₁ and c₁ the variance and cost of the way to the first turn and v₂ and c₂ those of one branch, n branches make
+//! variance times cost (v₁ + v₂/n)(c₁ + n c₂), least at n = √(v₂ c₁/(v₁ c₂)).
+
+use glam::Vec3;
+use tyndall_scene::surface::Presence;
+use tyndall_scene::{Light, Ray, Scene, Volume};
+
+use super::{Engine, Next};
+use crate::surface_vertex::SurfaceVertex;
+
+/// Branches where it pays: in scene D they leave 0.42 of the variance for 1.8 times the time; 2 and 8 gain less.
+const BRANCHES: u32 = 4;
+
+/// Albedo up to which it pays: paths that are scattered often are most of the cost.
+const GREATEST_ALBEDO: f64 = 0.9;
+
+/// Where a path has split.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Fork {
+    /// Branches that are still to come.
+    left: u32,
+    /// Volume of the collision, if it was one.
+    volume: usize,
+    position: Vec3,
+    direction: Vec3,
+    throughput: Vec3,
+    scatterings: u32,
+}
+
+/// The rest of that, in scenes with surfaces.
+#[derive(Debug, Clone)]
+pub(super) struct SidedFork {
+    /// The surface, if it was one.
+    vertex: Option<SurfaceVertex>,
+    ray: Ray,
+    presence: Presence,
+    refraction: f64,
+}
+
+/// Into how many branches the paths of a scene split: more than one where media glow and are not scattered in for long.
+pub(super) fn branches(scene: &Scene) -> u32 {
+    let glows = scene.lights.iter().any(|light| matches!(light, Light::Volume(_)));
+    let absorbs = |volume: &Volume| volume.medium.albedo.max_element() <= GREATEST_ALBEDO;
+    if glows && scene.volumes.iter().all(absorbs) { BRANCHES } else { 1 }
+}
+
+impl Engine<'_> {
+    /// Splits the path before it goes on from its collision in the volume of this number, or from a surface.
+    #[inline(always)]
+    pub(super) fn split(&mut self, slot: usize, volume: usize, vertex: Option<&SurfaceVertex>) {
+        let branches = self.scene.branches;
+        if branches < 2 {
+            return;
+        }
+        let path = &mut self.paths[slot];
+        path.throughput /= branches as f32;
+        let left = branches - 1;
+        let (position, direction) = (path.position, path.direction);
+        let (throughput, scatterings) = (path.throughput, path.scatterings);
+        path.fork = Fork { left, volume, position, direction, throughput, scatterings };
+        if let Some(sided) = self.sided.get_mut(slot) {
+            let (ray, presence, refraction) = (sided.ray, sided.presence.clone(), sided.refraction);
+            sided.fork = Some(SidedFork { vertex: vertex.cloned(), ray, presence, refraction });
+        }
+    }
+
+    /// Goes on with the path's next branch, if there is one.
+    #[inline(always)]
+    pub(super) fn branch(&mut self, slot: usize) -> Option<Next> {
+        let path = &mut self.paths[slot];
+        if path.fork.left == 0 {
+            return None;
+        }
+        path.fork.left -= 1;
+        let Fork { volume, position, direction, throughput, scatterings, .. } = path.fork;
+        (path.position, path.direction, path.throughput) = (position, direction, throughput);
+        (path.turns, path.scatterings) = (1, scatterings);
+        let mut here = self.scene.to_world(position);
+        let mut vertex = None;
+        if let Some(sided) = self.sided.get_mut(slot) {
+            let fork = sided.fork.clone()?;
+            here = fork.ray.origin;
+            (sided.ray, sided.presence, sided.refraction) = (fork.ray, fork.presence, fork.refraction);
+            vertex = fork.vertex;
+        }
+        match vertex {
+            Some(vertex) => self.turn_at(slot, &vertex),
+            None => self.turn_in(slot, volume, here),
+        }
+        Some(self.turned(slot, false))
+    }
+}
