@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
+use rayon::prelude::{
+    IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator, ParallelSlice, ParallelSliceMut,
+};
 
 use crate::fixed_point::SquareSum;
 use crate::sums::{CatcherSums, PixelSums};
@@ -44,7 +46,7 @@ fn encode_block<T: Record>(block: &[T]) -> Vec<u8> {
 
 /// Reads the blocks of a plane of `count` records from the front of `blocks`. Memory grows only as blocks turn out
 /// to be there.
-pub fn decode_plane<T: Record + Send>(
+pub fn decode_plane<T: Record + Default + Clone + Send>(
     blocks: &mut &[u8],
     plane: &mut Vec<T>,
     count: usize,
@@ -53,32 +55,32 @@ pub fn decode_plane<T: Record + Send>(
         return Err("it occurs twice".into());
     }
     while plane.len() < count {
+        let done = plane.len();
+        let records = (AT_ONCE * BLOCK).min(count - done);
         let mut compressed = Vec::with_capacity(AT_ONCE);
-        let mut left = count - plane.len();
-        while left > 0 && compressed.len() < AT_ONCE {
+        for _ in 0..records.div_ceil(BLOCK) {
             let (length, rest) = blocks.split_first_chunk().ok_or("a block is missing")?;
             let (block, rest) =
                 rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or("a block is cut short")?;
             *blocks = rest;
-            let records = BLOCK.min(left);
-            compressed.push((block, records));
-            left -= records;
+            compressed.push(block);
         }
-        let decoded: Vec<Vec<T>> = compressed
-            .par_iter()
-            .map(|(block, records)| decode_block(block, *records))
-            .collect::<Result<_, _>>()?;
-        decoded.into_iter().for_each(|records| plane.extend(records));
+        plane.resize(done + records, T::default());
+        let parts = plane[done..].par_chunks_mut(BLOCK);
+        compressed.par_iter().zip(parts).try_for_each(|(block, part)| decode_block(block, part))?;
     }
     Ok(())
 }
 
-fn decode_block<T: Record>(compressed: &[u8], records: usize) -> Result<Vec<T>, String> {
-    let bytes = lz4_flex::block::decompress(compressed, records * T::BYTES).map_err(|e| e.to_string())?;
-    if bytes.len() != records * T::BYTES {
+fn decode_block<T: Record>(compressed: &[u8], records: &mut [T]) -> Result<(), String> {
+    let length = records.len() * T::BYTES;
+    let bytes = lz4_flex::block::decompress(compressed, length).map_err(|e| e.to_string())?;
+    if bytes.len() != length {
         return Err("a block has the wrong length".into());
     }
-    Ok(transposed(&bytes, records).chunks_exact(T::BYTES).map(T::get).collect())
+    let bytes = transposed(&bytes, records.len());
+    records.iter_mut().zip(bytes.chunks_exact(T::BYTES)).for_each(|(record, bytes)| *record = T::get(bytes));
+    Ok(())
 }
 
 /// A matrix of bytes with rows of `columns` becomes one with its columns as rows.

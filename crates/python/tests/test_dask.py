@@ -176,6 +176,20 @@ def test_pictures_come_home_meanwhile(two_workers: Client, slow: tyndall.Scene) 
     assert pathlib.Path("live.png").exists()
 
 
+def test_dasks_profiler_rests_while_a_block_is_rendered(two_workers: Client, slow: tyndall.Scene) -> None:
+    def is_running(dask_worker: Any) -> bool:
+        return bool(dask_worker.periodic_callbacks["profile"].is_running())
+
+    seen: list[dict[str, bool]] = []
+    tyndall.dask.render(two_workers, slow, spp=64, progress=lambda _: seen.append(two_workers.run(is_running)))
+    assert not all(any(workers.values()) for workers in seen)
+    # Started again on the worker's own loop, which need not have come to it.
+    end = time.monotonic() + 10
+    while not all(two_workers.run(is_running).values()):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
 def test_frames_have_the_bits_of_their_scenes(two_workers: Client, cloud: tyndall.Scene) -> None:
     def scene(frame: int) -> tyndall.Scene:
         moved = cloud.copy()
