@@ -149,16 +149,17 @@ def detailed_file(tyndall, edge):
     if not file.exists():
         array = WORK / f"detail_{edge}.npy"
         axis = np.linspace(-1, 1, edge, dtype=np.float32)
-        values = np.lib.format.open_memmap(array, mode="w+", dtype=np.float32, shape=(edge,) * 3)
         y, z = axis[:, None], axis[None, :]
-        for i, x in enumerate(axis):
-            slab, waves = 0.8 - np.sqrt(x * x + y * y + z * z), 4.0
-            while waves < edge / 2:
-                ripple = np.sin(waves * x + 1) * np.sin(waves * y + 2) * np.sin(waves * z + 3)
-                slab, waves = slab + ripple / np.sqrt(waves), 2 * waves
-            values[i] = np.clip(slab, 0, 1)
-        values.flush()
-        del values
+        # Never all of it at once: what this process holds counts as its children's, until they hold more.
+        with array.open("wb") as out:
+            header = {"descr": "<f4", "fortran_order": False, "shape": (edge,) * 3}
+            np.lib.format.write_array_header_1_0(out, header)
+            for x in axis:
+                slab, waves = 0.8 - np.sqrt(x * x + y * y + z * z), 4.0
+                while waves < edge / 2:
+                    ripple = np.sin(waves * x + 1) * np.sin(waves * y + 2) * np.sin(waves * z + 3)
+                    slab, waves = slab + ripple / np.sqrt(waves), 2 * waves
+                out.write(np.clip(slab, 0, 1).astype("<f4").tobytes())
         part = file.with_suffix(".part.vdb")
         run([tyndall, "convert", array, part])
         part.rename(file)
