@@ -8,7 +8,7 @@ use crate::phase_function::UnsoundTable;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MieError {
     /// A size parameter out of range.
-    #[error("the size parameter 2πr/λ is {x}; it must be from 1e-6 to 1e5")]
+    #[error("the size parameter 2πr/λ is {x:?}; it must be from 1e-6 to 1e5")]
     Size {
         /// 2πr/λ.
         x: f64,

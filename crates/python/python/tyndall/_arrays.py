@@ -89,6 +89,37 @@ def rows(array: Floats) -> Floats:
     return np.ascontiguousarray(array.reshape(-1, array.shape[-1]))
 
 
+def number(name: str, value: Any) -> float:
+    """A single number that is finite.
+
+    >>> number("g", 1)
+    1.0
+    >>> number("g", [1, 2])
+    Traceback (most recent call last):
+    tyndall._errors.Error: g: a number is needed, not [1, 2]
+    """
+    try:
+        array = floats(name, value)
+    except Error:
+        array = np.empty(0)
+    if array.ndim == 0 and np.isfinite(array):
+        return float(array)
+    raise Error(f"{name}: a number is needed, not {repr(value)[:60]}")
+
+
+def pair(name: str, value: Any) -> tuple[Any, Any]:
+    """Two of a kind.
+
+    >>> pair("view", [30, 10])
+    (30, 10)
+    """
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise Error(f"{name}: two numbers are needed, not {repr(value)[:60]}") from None
+    return first, second
+
+
 def whole(name: str, value: Any, least: int, greatest: int) -> int:
     """A whole number within its limits."""
     try:

@@ -101,7 +101,7 @@ def properties(kind: str | None = None) -> list[Estimator]:
     >>> [estimator.name for estimator in properties() if not estimator.unbiased]
     ['ray-marching', 'ray-marching']
     """
-    if kind not in (None, "distance", "transmittance"):
+    if kind is not None and (not isinstance(kind, str) or kind not in ("distance", "transmittance")):
         raise Error(f'kind: write "distance" or "transmittance", not {kind!r}')
     declared = (
         Estimator(name, of, unbiased, majorant, tuple(needs), source)
@@ -150,6 +150,7 @@ def sample_distance(
     ((2, 5), True, 5.0)
     """
     sampling = _sampling(sampler, samples, seed, least=1)
+    samples = int(samples)
     shape, rays = _rays(origins, directions, distance, threads)
     if np.prod(shape, dtype=float) * samples > _MOST_FLIGHTS:
         raise Error(f"samples: {samples} of each ray are more than {_MOST_FLIGHTS} in all; take them in several calls")

@@ -115,7 +115,7 @@ def slab(
             "n": one_n,
             "ground_albedo": one_ground,
             "radiance": views.tolist(),
-            "azimuth": float(azimuth),
+            "azimuth": _arrays.number("azimuth", azimuth),
         }
         layers.append(layer)
     found = _tyndall.slabs(layers, effort)

@@ -59,9 +59,9 @@ class TransferFunction:
         if points.ndim != 1 or points.size == 0 or not np.all(np.isfinite(points)) or np.any(np.diff(points) <= 0):
             raise Error("values: a list of increasing numbers is needed, one for each point")
         self.values = points
-        if not -1 < g < 1:
+        self.g = _arrays.number("g", g)
+        if not -1 < self.g < 1:
             raise Error(f"g: a number between -1 and 1, both excluded, is needed, not {g!r}")
-        self.g = float(g)
         self._extinction = _row("extinction", extinction, points)
         if not np.all((self._extinction >= 0) & np.isfinite(self._extinction)):
             raise Error("extinction: numbers of 0 or more are needed")
@@ -71,13 +71,13 @@ class TransferFunction:
             self._albedo = _coloured("reflectance", reflectance, points)
             if np.any(self._albedo[1] > 1):
                 raise Error("reflectance: numbers from 0 to 1 are needed")
-            colours = _tyndall.albedo_of_reflectance(self._albedo[1].ravel(), g)
+            colours = _tyndall.albedo_of_reflectance(self._albedo[1].ravel(), self.g)
             self._albedo = (self._albedo[0], colours.reshape(-1, 3))
         else:
             self._albedo = _coloured("albedo", 0.9 if albedo is None else albedo, points)
             if np.any(self._albedo[1] > 1):
                 raise Error("albedo: numbers from 0 to 1 are needed")
-        if not (np.isfinite(emission_scale) and emission_scale >= 0):
+        if _arrays.number("emission_scale", emission_scale) < 0:
             raise Error(f"emission_scale: a number of 0 or more is needed, not {emission_scale!r}")
         at, radiance = _coloured("emission", emission, points)
         self._emission = (at, radiance * emission_scale)

@@ -90,11 +90,13 @@ def volume_scene(
     the azimuth and elevation `view`, in degrees: at azimuth 0 on the negative side of the data's y (if y or x is up, on the
     positive side of z), at 90 to the right of that.
     """
-    if preset not in PRESETS:
+    if not isinstance(preset, str) or preset not in PRESETS:
         raise Error(f'preset: there is no "{preset}"; there is {", ".join(PRESETS)}')
     chosen = PRESETS[preset]
-    if optical_thickness is not None and not (np.isfinite(optical_thickness) and optical_thickness > 0):
+    if optical_thickness is not None and _arrays.number("optical_thickness", optical_thickness) <= 0:
         raise Error(f"optical_thickness: a number above 0 is needed, not {optical_thickness!r}")
+    if transfer_function is not None and not isinstance(transfer_function, TransferFunction):
+        raise Error(f"transfer_function: a TransferFunction is needed, not {repr(transfer_function)[:60]}")
     volume = density if isinstance(density, Volume) else Volume(density, spacing=spacing, origin=origin)
     if isinstance(density, Volume) and (spacing is not None or origin is not None):
         raise Error("spacing: a Volume has its own; leave `spacing` and `origin` away")
@@ -107,9 +109,9 @@ def volume_scene(
         volumes = placed.classified(chosen.transfer_function, optical_thickness or chosen.thickness)
     else:
         volumes = placed.of_density(chosen.medium, optical_thickness or chosen.thickness)
-    azimuth, elevation = chosen.view if view is None else view
+    azimuth, elevation = _angles(chosen.view if view is None else view)
     stage = _day(azimuth) if chosen.light == "day" else _studio(azimuth)
-    width, height = (_arrays.whole("resolution", edge, 1, 1 << 16) for edge in resolution)
+    width, height = (_arrays.whole("resolution", edge, 1, 1 << 16) for edge in _arrays.pair("resolution", resolution))
     film: dict[str, Any] = {"resolution": [width, height]}
     film["exposure"] = stage.exposure if exposure is None else exposure
     camera = placed.framing_camera(azimuth, elevation, width / height)
@@ -277,18 +279,27 @@ def _studio(azimuth: float) -> _Stage:
     return _Stage([key, rim, {"type": "constant", "radiance": 0.15}], 0.0)
 
 
+def _angles(view: Any) -> tuple[float, float]:
+    """Azimuth and elevation in degrees."""
+    try:
+        azimuth, elevation = (_arrays.number("view", angle) for angle in _arrays.pair("view", view))
+        if abs(elevation) <= 90:
+            return azimuth, elevation
+    except Error:
+        pass
+    raise Error("view: give azimuth and elevation in degrees, such as (30, 20)")
+
+
 def _toward(azimuth: float, elevation: float) -> Floats:
     """The direction toward an azimuth, from +z over +x, and an elevation above the plane of x and z."""
-    a, e = np.radians(float(azimuth)), np.radians(float(elevation))
-    if not (np.isfinite(a) and abs(e) <= np.pi / 2):
-        raise Error("view: give azimuth and elevation in degrees, such as (30, 20)")
+    a, e = np.radians(azimuth), np.radians(elevation)
     return np.array([np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e)])
 
 
 def _rotation(up: str) -> list[float]:
     """Rotations about x, y and z, degrees, that turn an axis of the data to +y."""
     rotations = {"x": [0.0, 0.0, 90.0], "y": [0.0, 0.0, 0.0], "z": [-90.0, 0.0, 0.0]}
-    if up not in rotations:
+    if not isinstance(up, str) or up not in rotations:
         raise Error(f'up: write "x", "y" or "z", not {up!r}')
     return rotations[up]
 
