@@ -11,7 +11,7 @@ use tyndall_film::comparison::Picture;
 const BALL: &str = r#"
 camera = { position = [0, 0, 4], target = [0, 0, 0] }
 film = { resolution = [64, 48] }
-render = { spp = 60 }
+render = { spp = 10 }
 volume = [{ sphere = { center = [0, 0, 0], radius = 1 }, mu_t = 4, albedo = 0.9 }]
 light = [{ type = "point", position = [2, 2, 2], intensity = 9 }]
 "#;
