@@ -170,9 +170,9 @@ const LAMP_IN_GLASS: &str = r#"
     rectangle = { corner = [-9, 0, -9], u = [0, 0, 18], v = [18, 0, 0] }
     material = { type = "diffuse", reflectance = 0.5 }
     [[shape]]
-    sphere = { center = [0, 9, 0], radius = 0.7 }
+    sphere = { center = [0, 9, 0], radius = 0.25 }
     material = { type = "diffuse", reflectance = 0 }
-    emission = { radiance = 50 }
+    emission = { radiance = 393 }
     [[shape]]
     sphere = { center = [0, 9, 0], radius = 1.2 }
     material = { type = "dielectric", index = 1.0001 }
@@ -186,7 +186,7 @@ fn true_error_of_lamp_in_glass(film: &tyndall_film::Film) -> f64 {
         .map(|pixel| {
             let [x, y] = [f64::from(pixel % 32) - 15.5, f64::from(pixel / 32) - 8.5].map(|i| i * size);
             let distance = (81.0 + x * x + y * y).sqrt();
-            let truth = 0.5 * (1.0 + 49.0 * (0.7 / distance).powi(2) * 9.0 / distance);
+            let truth = 0.5 * (1.0 + 392.0 * (0.25 / distance).powi(2) * 9.0 / distance);
             (film.mean(pixel % 32, pixel / 32)[0] / truth - 1.0).abs()
         })
         .collect();
