@@ -120,15 +120,15 @@ def test_a_render_ends_at_its_error_or_time(ball: Ball) -> None:
 
 
 def test_what_few_pixels_have_seen_and_what_the_film_cannot_hold_is_told(ball: Ball) -> None:
-    # Glass about a lamp: only chance finds it, one path in 170.
-    lamp = {"sphere": {"center": [0, 9, 0], "radius": 0.7}, "material": {"type": "diffuse", "reflectance": 0}}
+    # Glass about a lamp: only chance finds it, one path in 1300.
+    lamp = {"sphere": {"center": [0, 9, 0], "radius": 0.25}, "material": {"type": "diffuse", "reflectance": 0}}
     scene = {
         "camera": {"position": [0, 6, 0], "target": [0, 0, 0], "up": [0, 0, 1]},
         "film": {"resolution": [32, 18]},
         "light": [{"type": "constant", "radiance": 1}],
         "shape": [
             {"rectangle": {"corner": [-9, 0, -9], "u": [0, 0, 18], "v": [18, 0, 0]}, "material": {"type": "diffuse", "reflectance": 0.5}},
-            {**lamp, "emission": {"radiance": 50}},
+            {**lamp, "emission": {"radiance": 393}},
             {"sphere": {"center": [0, 9, 0], "radius": 1.2}, "material": {"type": "dielectric", "index": 1.0001}},
         ],
     }
