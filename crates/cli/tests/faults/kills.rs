@@ -68,6 +68,7 @@ fn fifty_kills_at_random_times_change_no_bit() {
         std::thread::sleep(Duration::from_micros(20_000 + next(&mut state) % 180_000));
         if was_killed(child) {
             kills += 1;
+            assert!(kills < 1000, "no render gets to its end between two kills");
             // Whatever it was about: a checkpoint is whole, and of the leftovers of each target one at most remains.
             assert!(
                 !folder.path("check.acc").exists() || folder.accumulation("check.acc").film.width() == 64

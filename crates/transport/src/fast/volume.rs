@@ -87,9 +87,9 @@ impl<'a> FastScene<'a> {
         let homogeneous = Homogeneous::new(scene);
         let light_cache = LightCache::new(scene, centre);
         let gathers = light_cache.as_ref().is_some_and(|cache| gather::pays(scene, &volumes, cache));
-        let roulette_throughput = if gathers { gather::ROULETTE_THROUGHPUT } else { ROULETTE_THROUGHPUT };
         let branches = split::branches(scene);
-        let roulette_throughput = roulette_throughput / branches as f32;
+        let of_a_branch = if gathers { gather::ROULETTE_THROUGHPUT } else { ROULETTE_THROUGHPUT };
+        let roulette_throughput = of_a_branch / branches as f32;
         FastScene {
             scene,
             centre,
