@@ -13,12 +13,14 @@ pub mod mutation;
 mod pictures;
 mod report;
 mod scenes;
+mod stopwatch;
 mod sums;
 mod tables;
 mod volumes;
 
 use std::sync::Once;
-use std::time::Instant;
+
+use crate::stopwatch::Stopwatch;
 
 /// A reader, and the folder of `corpus/` and `regressions/` with its files.
 #[derive(Debug, Clone, Copy)]
@@ -94,7 +96,7 @@ pub struct Figures {
     pub outcome: Outcome,
     /// The most memory that was held at any time, bytes.
     pub memory: usize,
-    /// How long it took.
+    /// How long it took, without waiting for others that are at work on the machine.
     pub seconds: f64,
 }
 
@@ -125,9 +127,9 @@ impl Target {
     /// # Panics
     /// If the reader does, or takes more memory.
     pub fn within_memory(&self, bytes: &[u8]) -> Figures {
-        let begin = Instant::now();
+        let stopwatch = Stopwatch::start();
         let (outcome, memory) = memory::peak_of(|| (self.read)(bytes));
-        let seconds = begin.elapsed().as_secs_f64();
+        let seconds = stopwatch.seconds();
         let content = match outcome {
             Outcome::Read(content) => content,
             Outcome::Refused => 0,
