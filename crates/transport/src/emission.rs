@@ -167,6 +167,21 @@ pub(crate) fn source_at(volume: &Volume, position: DVec3, toward: DVec3) -> DVec
     source
 }
 
+/// w_light of a point that next-event estimation has drawn: with `probability` this light of all, which is that of `volume`, where a path
+/// goes there with the density `path_pdf`.
+pub(crate) fn light_weight(volume: &Volume, glow: &Glow, probability: f64, path_pdf: f64) -> f64 {
+    let by_path = path_pdf * found(volume, glow.position, glow.toward, glow.distance);
+    let by_light = probability * glow.density;
+    if by_path + by_light > 0.0 { by_light / (by_path + by_light) } else { 0.0 }
+}
+
+/// κ, with which a path finds the light of `volume` at a place that it flies to, but for the transmittance.
+fn found(volume: &Volume, position: DVec3, toward: DVec3, distance: f64) -> f64 {
+    let density = volume.density_at(volume.world_to_local.transform_point3(position));
+    let on_the_way = if volume.medium.emission_per_length != DVec3::ZERO { distance.recip() } else { 0.0 };
+    volume.medium.mu_t_along(toward) * density + on_the_way
+}
+
 /// w_path of a path that has turned at `from` with the density `path_pdf` towards `position`, where the volume glows; 1 if
 /// the volume is no light for next-event estimation.
 pub(crate) fn path_weight(scene: &Scene, number: usize, from: DVec3, position: DVec3, path_pdf: f64) -> f64 {
@@ -178,12 +193,7 @@ pub(crate) fn path_weight(scene: &Scene, number: usize, from: DVec3, position: D
     if distance_squared == 0.0 {
         return 1.0;
     }
-    let density = volume.density_at(volume.world_to_local.transform_point3(position));
-    let mut finds = volume.medium.mu_t_along(offset.normalize()) * density;
-    if volume.medium.emission_per_length != DVec3::ZERO {
-        finds += distance_squared.sqrt().recip();
-    }
-    let by_path = path_pdf * finds;
+    let by_path = path_pdf * found(volume, position, offset.normalize(), distance_squared.sqrt());
     let probability = scene.light_probability(light_number, from);
     let by_light = probability * light.pdf_volume(position) * distance_squared;
     if by_path + by_light > 0.0 { by_path / (by_path + by_light) } else { 1.0 }

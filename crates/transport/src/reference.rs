@@ -23,7 +23,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
-use crate::emission::{Glow, draw_glow, path_weight, source_at, weighted_emission_along};
+use crate::emission::{Glow, draw_glow, light_weight, path_weight, source_at, weighted_emission_along};
 use crate::equiangular_light::{Found, LitSegment};
 use crate::estimators::{Estimators, SceneFlight};
 use crate::found_light::{self, Turned};
@@ -360,13 +360,12 @@ impl Shadow<'_> {
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec3::ZERO };
         let u = [random.f64(), random.f64(), random.f64()];
-        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, u) else {
-            return DVec3::ZERO;
-        };
-        let volume = light.volume();
+        let Some(glow) = draw_glow(light, vertex.position, u) else { return DVec3::ZERO };
+        let Glow { position, toward, distance, density } = glow;
+        let volume = &self.scene.volumes[light.volume()];
         let (value, path_pdf) = (vertex.value)(toward);
-        let weight = 1.0 - path_weight(self.scene, volume, vertex.position, position, path_pdf);
-        let source = source_at(&self.scene.volumes[volume], position, toward);
+        let weight = light_weight(volume, &glow, probability, path_pdf);
+        let source = source_at(volume, position, toward);
         let unshadowed = value * source * (weight / (density * probability));
         self.shadowed(vertex, unshadowed, toward, distance, random)
     }

@@ -9,7 +9,8 @@
 //! Of Ls, what the [light cache](super::light_cache) knows is added at all of them; the rest, which is what the cache is wrong
 //! by and light that was scattered more often, at one that is drawn in proportion to W p. What lies behind the
 //! grid is met with the weight W_end. In thin media, where whether a ray collides at all is most of the noise, that noise is
-//! gone; and a majorant above the least brings more places to gather at.
+//! gone; and a majorant above the least brings more places to gather at. Of a fire it is the glow that is gathered so: without,
+//! a quarter of the variance of scene D is whether the camera's ray collides.
 //!
 //! What the film is told of the first collision, its distance and albedo, is decided as in delta tracking.
 
@@ -65,12 +66,14 @@ struct Pending {
     draws: FirstDraws,
 }
 
-/// Whether it pays that the camera's rays gather: if the scene is one thin grid, amid plain surfaces or none, and something
-/// is known of the light that arrives there. In thick media what is gathered far inside brings less than it costs.
-pub(super) fn pays(scene: &Scene, volumes: &[FastVolume], cache: &LightCache) -> bool {
+/// Whether it pays that the camera's rays gather: if the scene is one grid, amid plain surfaces or none, that is thin and of which
+/// something is known of the light that arrives there, or a fire around which paths split. In thick media what is gathered
+/// far inside brings less than it costs.
+pub(super) fn pays(scene: &Scene, volumes: &[FastVolume], cache: Option<&LightCache>, branches: u32) -> bool {
     let is_grid = |volume: &FastVolume| matches!(volume.kind, Kind::Grid(_)) && volume.shines.is_none();
     let catches = scene.surfaces.shapes.iter().any(|shape| shape.is_shadow_catcher);
-    matches!(volumes, [volume] if is_grid(volume)) && !catches && cache.mean_thickness() < GREATEST_THICKNESS
+    let is_thin = cache.is_some_and(|cache| cache.mean_thickness() < GREATEST_THICKNESS);
+    matches!(volumes, [volume] if is_grid(volume)) && !catches && (is_thin || branches > 1)
 }
 
 impl Engine<'_> {
@@ -87,7 +90,7 @@ impl Engine<'_> {
         let volume = &self.scene.volumes[rays.volume[slot] as usize];
         if share > 0.0 {
             let position = path.position + path.direction * distance;
-            let (albedo, emission) = self.scene.albedo_and_emission(volume, position);
+            let (albedo, emission) = self.scene.albedo_and_emission(volume, position, random);
             if !path.gathered.has_collided && u >= null {
                 path.gathered.has_collided = true;
                 let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());

@@ -7,8 +7,8 @@
 //!
 //! It differs from the reference in five ways, none of which changes an expected value: one random voxel in place of
 //! eight interpolated (see [`march`]), f32 relative to the scene's centre, roulette before shadow rays ([`next_event`]),
-//! in thin grids camera rays that bring light from every tentative collision ([`gather`]), and paths that split around
-//! fires ([`split`]).
+//! in thin grids and fires camera rays that bring light from every tentative collision ([`gather`]), and paths that split
+//! around fires ([`split`]).
 //!
 //! Scenes of one homogeneous medium, or none, need no march and are traced otherwise ([`homogeneous`]).
 
@@ -380,7 +380,7 @@ impl<'a> Engine<'a> {
         let path = &mut self.paths[slot];
         let random = &mut self.rays.random[slot];
         path.position += path.direction * distance;
-        let (albedo, emission) = self.scene.albedo_and_emission(volume, path.position);
+        let (albedo, emission) = self.scene.albedo_and_emission(volume, path.position, random);
         if !gathered {
             if path.turns == 0 {
                 let (distance, albedo) = (f64::from(distance), albedo.as_dvec3());
@@ -411,7 +411,7 @@ impl<'a> Engine<'a> {
             direct => direct.is_some(),
         };
 
-        if path.turns == 1 && !gathered {
+        if path.turns == 1 {
             self.split(slot, number, None);
         }
         self.turn_in(slot, number, here);

@@ -56,6 +56,10 @@ pub(super) fn choose_direct(
     if gathered {
         traced *= gather::CERTAINTY;
     }
+    // What a branch brings is small because there are several.
+    if path.turns > 1 {
+        traced *= scene.branches as f32;
+    }
     let cached = cached.unwrap_or(0.0);
     let mut boost = 1.0;
     if traced < 1.0 {

@@ -9,7 +9,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use super::split::SidedFork;
-use crate::emission::{Glow, draw_glow, path_weight, source_at};
+use crate::emission::{Glow, draw_glow, light_weight, source_at};
 use crate::first_draws::FirstDraws;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, Way, is_plain};
@@ -160,12 +160,14 @@ pub(super) fn light_of(
     random: &mut Random,
 ) -> Option<Direct> {
     let light = &scene.lights[number];
-    if let Light::Volume(glow) = light {
+    if let Light::Volume(light) = light {
         let u = draws.light_place_inside(random);
-        let Glow { position, toward, distance, density } = draw_glow(glow, from, u)?;
+        let glow = draw_glow(light, from, u)?;
+        let Glow { position, toward, distance, density } = glow;
+        let volume = &scene.volumes[light.volume()];
         let (value, path_pdf) = value(toward);
-        let weight = 1.0 - path_weight(scene, glow.volume(), from, position, path_pdf);
-        let source = source_at(&scene.volumes[glow.volume()], position, toward);
+        let weight = light_weight(volume, &glow, probability, path_pdf);
+        let source = source_at(volume, position, toward);
         let arriving = source * (weight / (density * probability));
         let unshadowed = (value * arriving).as_vec3();
         let arriving = arriving.as_vec3();

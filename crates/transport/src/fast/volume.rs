@@ -1,6 +1,7 @@
 //! The volumes as the fast engine sees them: f32, about a common centre, grids in local voxel coordinates.
 
 use glam::{Affine3A, DAffine3, DVec3, Vec3};
+use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
 use tyndall_scene::{Density, Light, Ray, Scene, Volume};
 use tyndall_volumes::bricks::Bricks;
@@ -47,10 +48,18 @@ pub(crate) struct FastVolume<'a> {
     pub phase: Phase<'a>,
     /// (1 − albedo)·Le: what a collision adds.
     pub emission: Vec3,
-    /// The volume, if albedo or emission have to be looked up at each collision.
-    pub fields: Option<&'a Volume>,
+    /// What has to be looked up at each collision, if anything.
+    pub fields: Option<Fields<'a>>,
     /// The volume, if it sends out light along the way.
     pub shines: Option<&'a Volume>,
+}
+
+/// What varies in a volume beside its density.
+pub(crate) enum Fields<'a> {
+    /// A grid that multiplies the emission; one random voxel of it will do, as in the march.
+    Emission(FastGrid<'a>),
+    /// Albedo or temperature, evaluated in f64: they do not enter by a factor alone.
+    Any(&'a Volume),
 }
 
 pub(crate) enum Kind<'a> {
@@ -86,10 +95,13 @@ impl<'a> FastScene<'a> {
         let is_sided = !scene.surfaces.is_empty();
         let homogeneous = Homogeneous::new(scene);
         let light_cache = LightCache::new(scene, centre);
-        let gathers = light_cache.as_ref().is_some_and(|cache| gather::pays(scene, &volumes, cache));
         let branches = split::branches(scene);
-        let of_a_branch = if gathers { gather::ROULETTE_THROUGHPUT } else { ROULETTE_THROUGHPUT };
-        let roulette_throughput = of_a_branch / branches as f32;
+        let gathers = gather::pays(scene, &volumes, light_cache.as_ref(), branches);
+        let roulette_throughput = match (gathers, branches) {
+            (_, 2..) => split::ROULETTE_THROUGHPUT / branches as f32,
+            (true, _) => gather::ROULETTE_THROUGHPUT,
+            (false, _) => ROULETTE_THROUGHPUT,
+        };
         FastScene {
             scene,
             centre,
@@ -118,10 +130,16 @@ impl<'a> FastScene<'a> {
 
     /// The albedo of a volume at a place, and what a collision there adds.
     #[inline(always)]
-    pub fn albedo_and_emission(&self, volume: &FastVolume, position: Vec3) -> (Vec3, Vec3) {
-        match volume.fields {
+    pub fn albedo_and_emission(
+        &self,
+        volume: &FastVolume,
+        position: Vec3,
+        random: &mut Random,
+    ) -> (Vec3, Vec3) {
+        match &volume.fields {
             None => (volume.albedo, volume.emission),
-            Some(fields) => looked_up(fields, self.to_world(position)),
+            Some(Fields::Emission(grid)) => (volume.albedo, volume.emission * grid.drawn(position, random)),
+            Some(Fields::Any(volume)) => looked_up(volume, self.to_world(position)),
         }
     }
 
@@ -166,6 +184,14 @@ impl<'a> FastGrid<'a> {
         if value > 0.0 { value } else { 0.0 }
     }
 
+    /// A value whose mean is the field's at a place relative to the scene's centre; outside the domain its background.
+    #[inline(always)]
+    pub fn drawn(&self, position: Vec3, random: &mut Random) -> f32 {
+        let place = self.to_local.transform_point3(position);
+        let is_inside = place.cmpge(self.min).all() && place.cmple(self.max).all();
+        if is_inside { self.tap(place, random.f32x3()) } else { self.grid.background() }
+    }
+
     /// The voxel nearest to a place relative to the scene's centre, or nothing outside the domain.
     pub fn nearest_or_nothing(&self, position: Vec3) -> f32 {
         let place = self.to_local.transform_point3(position);
@@ -187,13 +213,25 @@ impl<'a> FastVolume<'a> {
             Density::Grid(grid) => Kind::Grid(FastGrid::new(grid, volume.world_to_local, centre)),
             _ => Kind::ClosedForm(volume),
         };
+        let (fields, scale) = match volume.fields.as_deref() {
+            None => (None, 1.0),
+            Some(tyndall_scene::Fields {
+                emission: Some((field, scale)),
+                temperature: None,
+                albedo: None,
+            }) => {
+                let grid = FastGrid::new(&field.grid, field.world_to_local, centre);
+                (Some(Fields::Emission(grid)), *scale)
+            }
+            Some(_) => (Some(Fields::Any(volume)), 1.0),
+        };
         FastVolume {
             kind,
             mu_t: medium.mu_t as f32,
             albedo: medium.albedo.as_vec3(),
             phase: Phase::new(&medium.phase_function),
-            emission: ((DVec3::ONE - medium.albedo) * medium.emission).as_vec3(),
-            fields: volume.fields.is_some().then_some(volume),
+            emission: (scale * (DVec3::ONE - medium.albedo) * medium.emission).as_vec3(),
+            fields,
             shines: (medium.emission_per_length != DVec3::ZERO).then_some(volume),
         }
     }

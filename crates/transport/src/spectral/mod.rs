@@ -48,7 +48,8 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
 use crate::emission::{
-    Glow, draw_glow, emission_factor_along, emission_per_length_factor, emitting_stretch, path_weight,
+    Glow, draw_glow, emission_factor_along, emission_per_length_factor, emitting_stretch, light_weight,
+    path_weight,
 };
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::roulette::survival;
@@ -379,16 +380,15 @@ impl<'a> SpectralScene<'a> {
     {
         let Light::Volume(light) = &self.scene.lights[number] else { return DVec4::ZERO };
         let u = [random.f64(), random.f64(), random.f64()];
-        let Some(Glow { position, toward, distance, density }) = draw_glow(light, vertex.position, u) else {
-            return DVec4::ZERO;
-        };
+        let Some(glow) = draw_glow(light, vertex.position, u) else { return DVec4::ZERO };
+        let Glow { position, toward, distance, density } = glow;
         let (value, pdf) = (vertex.value)(toward);
         let source = self.source_at(light.volume(), position, toward);
         if path.densities.relative() * value * source == DVec4::ZERO {
             return DVec4::ZERO;
         }
         let mean_pdf = mean(&self.channels, pdf);
-        let weight = 1.0 - path_weight(self.scene, light.volume(), vertex.position, position, mean_pdf);
+        let weight = light_weight(&self.scene.volumes[light.volume()], &glow, probability, mean_pdf);
         let Some(shadow) = self.shadow(vertex, toward, distance, path.hero, random) else {
             return DVec4::ZERO;
         };
