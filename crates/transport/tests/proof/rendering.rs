@@ -33,8 +33,12 @@ pub fn render_with(scene: &Scene, options: RenderOptions, samples: Range<u64>) -
 
 /// Adds the samples to the film.
 pub fn add_pass(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
+    add_pass_of_seed(scene, film, samples, RenderOptions { seed: fresh::seed(options.seed), ..options });
+}
+
+/// The same by the very seed of the options, whichever is asked for.
+pub fn add_pass_of_seed(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
     film.open_range(samples.start).expect("passes follow each other");
-    let options = RenderOptions { seed: fresh::seed(options.seed), ..options };
     let outcome = render_pass(scene, film, samples.end, &options, &Control::default());
     assert_eq!(outcome, Outcome::Complete);
     film.complete_through(samples.end).expect("a complete pass holds all its samples");

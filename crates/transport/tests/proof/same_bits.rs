@@ -70,9 +70,6 @@ fn threads_and_passes_change_no_bit() {
         let mut left = film(1, &[[0, 2]]);
         left.merge(&film(2, &[[2, 6]])).expect("disjoint samples of one picture");
         assert!(whole == left, "{integrator:?}, {sampler:?}: two films merged");
-        assert!(
-            whole != film(1, &[[1, 7]]),
-            "{integrator:?}, {sampler:?}: other samples are other pictures"
-        );
+        assert!(whole != film(1, &[[1, 7]]), "{integrator:?}, {sampler:?}: other samples are other pictures");
     }
 }
