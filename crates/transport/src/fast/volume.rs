@@ -187,16 +187,22 @@ impl<'a> FastGrid<'a> {
     /// A value whose mean is the field's at a place relative to the scene's centre; outside the domain its background.
     #[inline(always)]
     pub fn drawn(&self, position: Vec3, random: &mut Random) -> f32 {
-        let place = self.to_local.transform_point3(position);
-        let is_inside = place.cmpge(self.min).all() && place.cmple(self.max).all();
-        if is_inside { self.tap(place, random.f32x3()) } else { self.grid.background() }
+        match self.place_inside(position) {
+            Some(place) => self.tap(place, random.f32x3()),
+            None => self.grid.background(),
+        }
     }
 
     /// The voxel nearest to a place relative to the scene's centre, or nothing outside the domain.
     pub fn nearest_or_nothing(&self, position: Vec3) -> f32 {
+        self.place_inside(position).map_or(0.0, |place| self.nearest(place))
+    }
+
+    /// The local place of one relative to the scene's centre, if it is in the domain.
+    #[inline(always)]
+    fn place_inside(&self, position: Vec3) -> Option<Vec3> {
         let place = self.to_local.transform_point3(position);
-        let is_inside = place.cmpge(self.min).all() && place.cmple(self.max).all();
-        if is_inside { self.nearest(place) } else { 0.0 }
+        (place.cmpge(self.min).all() && place.cmple(self.max).all()).then_some(place)
     }
 
     /// The voxel nearest to the local place.

@@ -8,11 +8,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use tyndall_film::{Film, Layers};
-use tyndall_scene::description::Integrator;
+use tyndall_film::Film;
 use tyndall_scene::{Scene, SceneDocument};
 
-use crate::rendering::{BOTH, add_pass_of_seed, options};
+use crate::rendering::{BOTH, options, render_of_seed};
 
 const SAMPLES: u64 = 3;
 
@@ -67,19 +66,13 @@ fn hash(film: &Film) -> u64 {
     hash
 }
 
-/// The film of a seed that fresh ones do not change.
-fn film(scene: &Scene, integrator: Integrator) -> Film {
-    let mut film = Film::new(scene.resolution[0], scene.resolution[1], Layers::ALL).expect("a small picture");
-    add_pass_of_seed(scene, &mut film, 0..SAMPLES, options(integrator, 7));
-    film
-}
-
-/// A line a scene: its hash by the reference and by the fast integrator, or both by the spectral ones.
+/// A line a scene, by a seed that fresh ones do not change: its hash by the reference and by the fast integrator, or both by the spectral ones.
 fn hashes() -> String {
     let mut lines = String::new();
     for (name, path) in gallery() {
         let scene = small(&path);
-        let [reference, fast] = BOTH.map(|integrator| hash(&film(&scene, integrator)));
+        let [reference, fast] =
+            BOTH.map(|integrator| hash(&render_of_seed(&scene, options(integrator, 7), 0..SAMPLES)));
         writeln!(lines, "{reference:016x} {fast:016x} {name}").expect("text takes text");
     }
     lines

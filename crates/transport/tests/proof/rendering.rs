@@ -24,20 +24,28 @@ pub fn render(scene: &Scene, integrator: Integrator, seed: u64, samples: Range<u
 
 /// The same with other options.
 pub fn render_with(scene: &Scene, options: RenderOptions, samples: Range<u64>) -> Film {
+    render_of_seed(scene, with_fresh_seed(options), samples)
+}
+
+/// The same by the very seed of the options, whichever is asked for.
+pub fn render_of_seed(scene: &Scene, options: RenderOptions, samples: Range<u64>) -> Film {
     let [width, height] = scene.resolution;
     let mut film = Film::new(width, height, Layers::ALL).expect("test pictures are small");
-    add_pass(scene, &mut film, samples, options);
+    add_pass_of_seed(scene, &mut film, samples, options);
     assert_eq!(film.rejected(), 0, "{options:?} made samples that are no numbers");
     film
 }
 
 /// Adds the samples to the film.
 pub fn add_pass(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
-    add_pass_of_seed(scene, film, samples, RenderOptions { seed: fresh::seed(options.seed), ..options });
+    add_pass_of_seed(scene, film, samples, with_fresh_seed(options));
 }
 
-/// The same by the very seed of the options, whichever is asked for.
-pub fn add_pass_of_seed(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
+fn with_fresh_seed(options: RenderOptions) -> RenderOptions {
+    RenderOptions { seed: fresh::seed(options.seed), ..options }
+}
+
+fn add_pass_of_seed(scene: &Scene, film: &mut Film, samples: Range<u64>, options: RenderOptions) {
     film.open_range(samples.start).expect("passes follow each other");
     let outcome = render_pass(scene, film, samples.end, &options, &Control::default());
     assert_eq!(outcome, Outcome::Complete);

@@ -93,7 +93,8 @@ const REGION: u32 = 5;
 /// Every region within its standard error and the mean of the picture within its own, each at a level of 1e-4 for
 /// the picture; and that standard error is small enough to say something.
 fn assert_white_on_average(name: &str, scene: &Scene, integrator: Integrator, seed: u64) -> Estimate {
-    let film = render(scene, integrator, seed, 0..if is_full() { 640 } else { 64 });
+    let samples = if is_full() { 640 } else { 64 };
+    let film = render(scene, integrator, seed, 0..samples);
     let regions = 20 / REGION;
     let limit = two_sided_quantile(1e-4 / f64::from(regions * regions));
     for region in 0..regions * regions {
