@@ -6,8 +6,10 @@
 
 use std::time::Instant;
 
-/// Ticks a second of the times in `/proc`, the same on all Linux systems of today.
-const TICKS: f64 = 100.0;
+use tyndall_machine::seconds_on_cores;
+
+/// Seconds to which the time on cores is told.
+const TICK: f64 = 0.01;
 
 /// When it began.
 pub(crate) struct Stopwatch {
@@ -24,17 +26,9 @@ impl Stopwatch {
     pub fn seconds(&self) -> f64 {
         let wall = self.wall.elapsed().as_secs_f64();
         // Counted in ticks, of which one may have been begun.
-        let cores = self.cores.zip(seconds_on_cores()).map(|(begin, end)| end - begin + 1.0 / TICKS);
+        let cores = self.cores.zip(seconds_on_cores()).map(|(begin, end)| end - begin + TICK);
         cores.map_or(wall, |cores| cores.min(wall))
     }
-}
-
-/// Seconds that this process has spent on all cores.
-fn seconds_on_cores() -> Option<f64> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
-    Some(ticks / TICKS)
 }
 
 #[cfg(test)]

@@ -7,13 +7,12 @@
 //! time of rendering alone, on as many threads as there are cores; `cpu` is the time that the cores spent on it, over
 //! their number, which other work on the machine disturbs less, and by which `efficiency` is computed.
 
-mod cpu_time;
-
 use std::path::Path;
 use std::time::Instant;
 
 use tyndall_film::comparison::{Picture, compare};
 use tyndall_film::{Film, Layers};
+use tyndall_machine::seconds_on_cores;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Scene, SceneDocument, build};
 use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
@@ -76,11 +75,11 @@ fn measure(
     for seed in 1..=seeds {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let options = RenderOptions { integrator, sampler, seed, threads, estimators: Estimators::default() };
-        let (start, cpu_start) = (Instant::now(), cpu_time::seconds());
+        let (start, cpu_start) = (Instant::now(), seconds_on_cores());
         let film = render(&scene, samples, &options);
         seconds += start.elapsed().as_secs_f64();
         cpu += cpu_start
-            .zip(cpu_time::seconds())
+            .zip(seconds_on_cores())
             .map_or(start.elapsed().as_secs_f64(), |(a, b)| (b - a) / threads as f64);
         let [width, height] = scene.resolution.map(|edge| edge as usize);
         let picture = Picture { width, height, rgb: film.mean_image(), standard_error: None };

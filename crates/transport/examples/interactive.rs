@@ -6,12 +6,11 @@
 //! Times are from the order to the mean image; `cpu` is the time of all cores over their number, which other work on the
 //! machine disturbs less.
 
-mod cpu_time;
-
 use std::path::Path;
 use std::time::Instant;
 
 use tyndall_film::{Film, Layers};
+use tyndall_machine::seconds_on_cores;
 use tyndall_scene::description::{CameraDescription, Integrator, Sampler};
 use tyndall_scene::{Camera, Scene, SceneDocument, build};
 use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
@@ -46,7 +45,7 @@ fn main() {
 
 /// Renders one sample a pixel; seconds, and seconds of each core.
 fn look(scene: &mut Scene, camera: &CameraDescription, [width, height]: [u32; 2]) -> (f64, f64) {
-    let (start, cpu_start) = (Instant::now(), cpu_time::seconds().unwrap_or_default());
+    let (start, cpu_start) = (Instant::now(), seconds_on_cores().unwrap_or_default());
     scene.camera = Camera::new(camera, [width, height], None);
     scene.resolution = [width, height];
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -63,7 +62,7 @@ fn look(scene: &mut Scene, camera: &CameraDescription, [width, height]: [u32; 2]
     film.complete_through(1).expect("the pass was not cancelled");
     let image = film.mean_image();
     assert!(image.iter().flatten().all(|channel| channel.is_finite()));
-    (start.elapsed().as_secs_f64(), (cpu_time::seconds().unwrap_or_default() - cpu_start) / threads as f64)
+    (start.elapsed().as_secs_f64(), (seconds_on_cores().unwrap_or_default() - cpu_start) / threads as f64)
 }
 
 /// The camera on its way around the vertical axis through its target, by an angle in radians.

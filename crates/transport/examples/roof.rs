@@ -12,8 +12,6 @@
 //! what share of the roof the march reaches (see `roof/share.rs`).
 
 #[cfg(feature = "counters")]
-mod cpu_time;
-#[cfg(feature = "counters")]
 #[path = "roof/share.rs"]
 mod share;
 

@@ -12,6 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use tyndall_film::{Film, Layers};
+use tyndall_machine::seconds_on_cores;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Density, Scene, SceneDocument, build};
 use tyndall_transport::counters::{Counters, Event};
@@ -19,7 +20,6 @@ use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
 use tyndall_volumes::BrickGrid;
 use tyndall_volumes::bricks::Bricks;
 
-use super::cpu_time;
 use super::thread_seconds;
 
 /// Enough samples that the pools are full for most of the time.
@@ -45,10 +45,10 @@ pub fn measure_all(roof: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
 
 fn measure(name: &str, scene: &Scene, threads: usize, roof: &dyn Fn(usize, usize) -> f64) -> String {
     let bytes: usize = grids(scene).map(BrickGrid::memory_bytes).sum();
-    let (start, cpu_start) = (Instant::now(), cpu_time::seconds());
+    let (start, cpu_start) = (Instant::now(), seconds_on_cores());
     let counters = count(scene, threads);
     let wall = start.elapsed().as_secs_f64() * threads as f64;
-    let seconds = cpu_start.zip(cpu_time::seconds()).map_or(wall, |(start, end)| end - start);
+    let seconds = cpu_start.zip(seconds_on_cores()).map_or(wall, |(start, end)| end - start);
     let of_all = counters.count(Event::MarchNanosecond) as f64 * 1e-9 / wall;
     let in_march = seconds * of_all;
     // A thread does so much in its own seconds, and there are so many of them.
