@@ -12,6 +12,18 @@ pub(crate) fn uniform_scale(affine: &DAffine3) -> Option<f64> {
     is_similarity.then(|| square.sqrt())
 }
 
+/// Volume of what a map makes of a cube over that of a box with edges as long, below which the map is flat: products of maps that
+/// are flat have one that is as good as 0, but seldom 0.
+const FLAT: f64 = 1e-12;
+
+/// Whether a map takes all things to a plane, a line or a point, or is none.
+pub(crate) fn is_flat(affine: &DAffine3) -> bool {
+    let m = &affine.matrix3;
+    let edges = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
+    let is_open = m.determinant().abs() > FLAT * edges;
+    !is_open || !affine.is_finite() || !affine.inverse().is_finite()
+}
+
 /// Whether a map takes axes to axes, so that boxes along them stay such boxes.
 pub(crate) fn keeps_axes(affine: &DAffine3) -> bool {
     let columns = [affine.matrix3.x_axis, affine.matrix3.y_axis, affine.matrix3.z_axis];
@@ -30,4 +42,23 @@ pub(crate) fn map_box(affine: &DAffine3, [min, max]: [DVec3; 2]) -> [DVec3; 2] {
     corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[least, greatest], corner| {
         [least.min(corner), greatest.max(corner)]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_that_are_flat_but_for_rounding_are_flat() {
+        let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+        let turn = DAffine3::from_rotation_y(0.3) * DAffine3::from_rotation_x(1.1);
+        for map in [flat, flat * turn, turn * flat, turn * flat * turn.inverse()] {
+            assert!(is_flat(&map), "{map}");
+        }
+        assert!(is_flat(&DAffine3::from_scale(DVec3::NAN)));
+        let thin = DAffine3::from_scale(DVec3::new(1e3, 1e-3, 1.0));
+        for map in [DAffine3::IDENTITY, turn, thin, thin * turn, turn * thin] {
+            assert!(!is_flat(&map), "{map}");
+        }
+    }
 }

@@ -17,6 +17,7 @@ use super::object::{Class, Object, Value};
 use super::spectrum::Role;
 use super::transform::Transform;
 use crate::ImportError;
+use crate::affine::is_flat;
 
 /// A quantity of a medium.
 enum Quantity {
@@ -177,6 +178,9 @@ impl<'a> Importer<'a> {
             return Ok(Quantity::Constant(self.spectrum(object, name, role, default)?, Transform::default()));
         }
         let transform = volume.transform("to_world")?;
+        if is_flat(&transform.map) {
+            return Err(volume.place.error("the `to_world` of the volume is flat: no factor may be 0"));
+        }
         let quantity = match volume.plugin.as_str() {
             "constvolume" => Quantity::Constant(self.spectrum(volume, "value", role, 1.0)?, transform),
             "gridvolume" => self.grid(volume, transform)?,
@@ -208,11 +212,10 @@ impl<'a> Importer<'a> {
         let file = GridFile::read(&path, uses_box)?;
         let map = if uses_box { transform.map } else { transform.map * file.box_to_unit_cube() };
         let is_large = map.to_cols_array().iter().any(|entry| entry.abs() > 1e30);
-        let is_flat = map.matrix3.determinant() == 0.0;
-        if is_flat || is_large || !map.is_finite() || !map.inverse().is_finite() {
+        if is_large || is_flat(&map) {
             return Err(volume
                 .place
-                .error("the `to_world` flattens the grid, or is too large: mend its factors"));
+                .error("the `to_world` is too large or too small for this grid: mend its factors"));
         }
         Ok(Quantity::Grid(
             Placed { file, transform: map, filter_reaches_out: filter == GridFilter::Trilinear },

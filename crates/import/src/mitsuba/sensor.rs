@@ -11,6 +11,7 @@ use super::importer::Importer;
 use super::object::{Class, Object};
 use super::transform::{LookAt, plain};
 use crate::ImportError;
+use crate::affine::is_flat;
 
 impl<'a> Importer<'a> {
     /// The camera; sets the film.
@@ -27,7 +28,7 @@ impl<'a> Importer<'a> {
         }
         let transform = object.transform("to_world")?;
         let map = transform.map;
-        if map.matrix3.determinant() == 0.0 {
+        if is_flat(&map) {
             return Err(object.place.error("the `to_world` of the sensor is flat: no factor may be 0"));
         }
         let [width, height] = self.film.resolution.map(f64::from);

@@ -20,7 +20,7 @@ use super::smooth::with_normals;
 use super::spectrum::Role;
 use super::transform::{GREATEST, Transform, plain};
 use crate::ImportError;
-use crate::affine::uniform_scale;
+use crate::affine::{is_flat, uniform_scale};
 
 /// Greatest number of shapes, all instances counted.
 const INSTANCES: usize = 1 << 22;
@@ -62,7 +62,7 @@ impl<'a> Importer<'a> {
         };
         let map = object.transform("to_world")?.map;
         self.tell_unused(object);
-        if map.matrix3.determinant() == 0.0 {
+        if is_flat(&map) {
             return Err(object.place.error("the `to_world` of the instance is flat: no factor may be 0"));
         }
         let transforms = self.instances.transforms.entry(group).or_default();
@@ -268,8 +268,7 @@ fn is_degenerate(shape: &ShapeDescription, map: &DAffine3) -> bool {
     if let Some(rectangle) = &shape.rectangle {
         return !crosses(rectangle.u, rectangle.v);
     }
-    let inverse = map.inverse();
-    !(map.matrix3.determinant() != 0.0 && inverse.is_finite())
+    is_flat(map)
 }
 
 fn sphere(shape: &mut ShapeDescription, object: &Object, map: &DAffine3) -> Result<(), ImportError> {

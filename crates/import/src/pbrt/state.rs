@@ -12,7 +12,7 @@ use super::place::Place;
 use super::tokens;
 use super::transforms;
 use super::world::{CameraUse, MaterialUse, Medium, Object, Shape, Texture, World};
-use crate::ImportError;
+use crate::{ImportError, affine};
 
 /// `AttributeBegin` within `AttributeBegin`.
 const DEEPEST: usize = 1000;
@@ -254,7 +254,7 @@ impl State {
     }
 
     fn check_regular(&self, place: &Place) -> Result<(), ImportError> {
-        if transforms::is_regular(&self.now.to_world) {
+        if !affine::is_flat(&self.now.to_world) {
             return Ok(());
         }
         Err(place.error("the transform here flattens all things: give no scale of 0"))

@@ -57,11 +57,6 @@ pub(super) fn description(affine: &DAffine3) -> Option<TransformDescription> {
     Some(TransformDescription { matrix: Some(matrix), ..Default::default() })
 }
 
-/// Whether the map can be undone, with room for rounding.
-pub(super) fn is_regular(affine: &DAffine3) -> bool {
-    affine.is_finite() && affine.matrix3.determinant() != 0.0 && affine.inverse().is_finite()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
