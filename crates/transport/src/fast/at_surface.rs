@@ -1,5 +1,6 @@
 //! A path's turn at a surface: the way there, the lights that are looked at from it, and how the path goes on.
 
+use super::next_event::choose_correction;
 use super::sided::{Direct, draw_light, light_of};
 use super::{Engine, Next, survives_roulette};
 use crate::counters::{self, Event};
@@ -45,6 +46,7 @@ impl Engine<'_> {
             return Next::Record;
         }
         path.turns += 1;
+        path.position = (vertex.position() - self.scene.centre).as_vec3();
 
         let mut traced = false;
         if path.turns == 1 && !self.seen_at_once.is_empty() {
@@ -61,19 +63,20 @@ impl Engine<'_> {
             path.direct_is_glow = false;
         } else if !vertex.is_delta() {
             let value = |toward| (vertex.value(toward).truncate(), vertex.pdf(toward));
-            if let Some(Direct { unshadowed, is_glow, toward, distance, .. }) =
-                draw_light(scene, vertex.position(), value, path.draws, random)
-                && unshadowed != Vec3::ZERO
-            {
-                path.direct = path.throughput * unshadowed;
-                path.direct_is_glow = is_glow;
-                path.shadow_direction = toward.as_vec3();
-                path.light_distance = distance as f32;
-                traced = sided.sees_from(scene, &vertex, toward, distance, random);
-            }
+            let way = if self.scene.knows_all_lights {
+                choose_correction(self.scene, vertex.position(), path, value, false, random)
+            } else {
+                let direct = draw_light(scene, vertex.position(), value, path.draws, random);
+                direct.filter(|direct| direct.unshadowed != Vec3::ZERO).map(|direct| {
+                    let way = (direct.toward, direct.distance);
+                    path.look(path.throughput * direct.unshadowed, direct.is_glow, way);
+                    way
+                })
+            };
+            traced = way
+                .is_some_and(|(toward, distance)| sided.sees_from(scene, &vertex, toward, distance, random));
         }
 
-        path.position = (vertex.position() - self.scene.centre).as_vec3();
         if path.turns == 1 && !vertex.is_delta() {
             self.split(slot, 0, Some(&vertex));
         }

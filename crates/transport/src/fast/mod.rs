@@ -39,7 +39,7 @@ use crate::way::{Span, is_plain};
 use crate::wide;
 use glam::{DVec3, Vec3};
 use march::List;
-use next_event::choose_direct;
+use next_event::{choose_correction, choose_direct};
 pub(crate) use pool::Pixel;
 use pool::{GATHERS, OWN, POOL, Path, Rays, SHADOW};
 use sided::{Sided, lights_seen_at_once};
@@ -403,12 +403,18 @@ impl<'a> Engine<'a> {
             Some(sided) => sided.collide(self.scene.scene, f64::from(distance)),
             None => self.scene.to_world(path.position),
         };
-        let traced = match choose_direct(self.scene, here, path, volume.phase, gathered, random) {
+        let way = if self.scene.knows_all_lights {
+            let turning = volume.phase.turning(path.direction);
+            choose_correction(self.scene, here, path, turning, gathered, random)
+        } else {
+            choose_direct(self.scene, here, path, volume.phase, gathered, random)
+        };
+        let traced = match way {
             // In f64: rounded, the end of the shadow ray might lie behind the lamp's own surface.
             Some((toward, distance)) if self.scene.is_sided => {
                 self.sided[slot].sees(self.scene.scene, toward, distance, random)
             }
-            direct => direct.is_some(),
+            way => way.is_some(),
         };
 
         if path.turns == 1 {

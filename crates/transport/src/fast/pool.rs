@@ -149,6 +149,15 @@ impl Path {
         self.turned.map(|from| (from, f64::from(self.turn_pdf)))
     }
 
+    /// Makes a shadow ray ready, which brings `direct` if nothing is in its way.
+    #[inline(always)]
+    pub fn look(&mut self, direct: Vec3, is_glow: bool, (toward, distance): (DVec3, f64)) {
+        self.direct = direct;
+        self.direct_is_glow = is_glow;
+        self.shadow_direction = toward.as_vec3();
+        self.light_distance = distance as f32;
+    }
+
     /// Adds light that was scattered as often as the path has been.
     #[inline(always)]
     pub fn add_in_scattered(&mut self, radiance: Vec3) {

@@ -11,6 +11,7 @@ use super::gather;
 use super::homogeneous::Homogeneous;
 use super::light_cache::LightCache;
 use super::pool::Path;
+use super::sided::lights_seen_at_once;
 use super::split;
 use crate::emission::path_weight;
 
@@ -33,6 +34,8 @@ pub(crate) struct FastScene<'a> {
     pub light_cache: Option<LightCache>,
     /// Whether camera rays [gather](super::gather).
     pub(super) gathers: bool,
+    /// Whether that knows all lights, and all are points or parallel light: they are [corrected](super::next_event) one by one.
+    pub(super) knows_all_lights: bool,
     /// Throughput below which paths play roulette; survivors get twice this.
     pub(super) roulette_throughput: f32,
     /// Into how many branches paths split where they first turn.
@@ -97,6 +100,7 @@ impl<'a> FastScene<'a> {
         let light_cache = LightCache::new(scene, centre);
         let branches = split::branches(scene);
         let gathers = gather::pays(scene, &volumes, light_cache.as_ref(), branches);
+        let knows_all_lights = gathers && light_cache.is_some() && !lights_seen_at_once(scene).is_empty();
         let roulette_throughput = match (gathers, branches) {
             (_, 2..) => split::ROULETTE_THROUGHPUT / branches as f32,
             (true, _) => gather::ROULETTE_THROUGHPUT,
@@ -111,6 +115,7 @@ impl<'a> FastScene<'a> {
             has_volume_lights,
             light_cache,
             gathers,
+            knows_all_lights,
             roulette_throughput,
             branches,
             homogeneous,
