@@ -116,6 +116,36 @@ fn filtered_values_stay_within_the_bounds_of_their_segment() {
     }
 }
 
+/// Steps of 1e-10 are lost in the rounding of distances of 1e7, and steps of a voxel in those of 1e17.
+#[test]
+fn rays_from_far_away_come_to_an_end() {
+    let mut draws = Draws(7);
+    let bricks = BrickGrid::from_tree(&random_tree(&mut draws, 0.0), "t", Storage::F32).unwrap();
+    let [low, high] = bricks.domain();
+    for distance in [1e5, 1e7, 1e9, 1e12, 1e17, 1e30, 1e200] {
+        let mut crossed = 0;
+        for _ in 0..300 {
+            let target = low + (high - low) * draws.point();
+            let mut toward = draws.point() - 0.5;
+            if draws.below(3) == 0 {
+                toward.y *= 1e-7;
+            }
+            let toward = toward.normalize();
+            let origin = target - toward * distance;
+            let (mut reached, mut segments) = (0.0, 0);
+            let _ = bricks.segments::<()>(origin, toward, (0.0, f64::INFINITY), |segment| {
+                assert!(segment.start >= reached && segment.end > segment.start, "{segment:?} {reached}");
+                reached = segment.end;
+                segments += 1;
+                assert!(segments < 10_000, "{origin} {toward}");
+                ControlFlow::Continue(())
+            });
+            crossed += u32::from(segments > 0);
+        }
+        assert!(crossed > 290 || distance > 1e13, "{crossed} of 300 rays from {distance} have met the grid");
+    }
+}
+
 #[test]
 fn cells_are_visited_once_each_are_those_of_lookups_and_fill_the_domain() {
     for seed in 0..5 {

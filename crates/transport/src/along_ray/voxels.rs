@@ -14,6 +14,11 @@ pub(super) fn voxel_intervals<B>(
     (start, end): (f64, f64),
     visit: &mut impl FnMut(f64, f64) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
+    // From so far away that planes cannot be told apart, nor can what lies between them.
+    let rounding = 4.0 * f64::EPSILON * start.abs().max(end.abs());
+    if rounding * local.direction.abs().max_element() >= 1.0 {
+        return visit(start, end);
+    }
     let at_start = local.at(start);
     let mut planes = [0.0; 3];
     let mut crossings = [f64::INFINITY; 3];

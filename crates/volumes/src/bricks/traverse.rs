@@ -29,16 +29,26 @@ impl BrickGrid {
         mut visit: impl FnMut(Segment) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let inverse = direction.recip();
-        let Some((mut t, end)) = clip(self.domain, origin, inverse, (start, end)) else {
+        let Some((start, end)) = clip(self.domain, origin, inverse, (start, end)) else {
             return ControlFlow::Continue(());
         };
         let table = DVec3::new(self.origin[0].into(), self.origin[1].into(), self.origin[2].into());
-        let local_origin = origin - table;
         // A point this little further along each axis, in voxels, decides which cell comes next. Further along the
         // ray instead, one that runs nearly in the plane of a face would not get across it and crawl.
         let nudge = 1e-9_f64.max(4.0 * f64::EPSILON * (self.domain[1] - table).max_element());
-        let ahead = local_origin + direction.signum() * nudge;
         let least_step = nudge / direction.abs().max_element();
+        // A ray from so far away that steps are lost in the rounding of `t`, and it would stand still, begins anew where it
+        // comes in.
+        let is_far = 4.0 * f64::EPSILON * start.abs().max(end.abs()) > least_step;
+        let base = if is_far { start } else { 0.0 };
+        let origin = origin + direction * base;
+        let range = (start - base, end - base);
+        let inside = if is_far { clip(self.domain, origin, inverse, range) } else { Some(range) };
+        let Some((mut t, end)) = inside else {
+            return ControlFlow::Continue(());
+        };
+        let local_origin = origin - table;
+        let ahead = local_origin + direction.signum() * nudge;
         while t < end {
             let voxel = (ahead + direction * t).max(DVec3::ZERO).as_uvec3().to_array();
             let cell = self.cell(voxel);
@@ -51,7 +61,10 @@ impl BrickGrid {
                 }
             }
             let exit = exit.max(t + least_step).min(end);
-            visit(Segment { start: t, end: exit, bounds: self.cell_bounds(voxel) })?;
+            let segment = Segment { start: base + t, end: base + exit, bounds: self.cell_bounds(voxel) };
+            if segment.start < segment.end {
+                visit(segment)?;
+            }
             t = exit;
         }
         ControlFlow::Continue(())
