@@ -45,7 +45,8 @@ pub(crate) fn tentative_collisions<B>(
         }
         let mut t = piece.start;
         loop {
-            t += random.exponential_f64() / rate;
+            // Far away a step may be less than the rounding of `t`, and must not be lost.
+            t = (t + random.exponential_f64() / rate).max(t.next_up());
             if t >= piece.end {
                 depth += rate * (piece.end - piece.start);
                 return ControlFlow::Continue(());
@@ -53,4 +54,31 @@ pub(crate) fn tentative_collisions<B>(
             visit(Tentative { t, rate, depth: depth + rate * (t - piece.start), piece }, random)?;
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::along_ray::extinction::Stretch;
+    use crate::along_ray::profile::Profile;
+
+    /// Neighbours of 1e19 are 2048 apart, a thousand mean steps.
+    #[test]
+    fn steps_below_rounding_come_to_an_end() {
+        let ray = AlongRay::of(Stretch::with_profile(Profile::Constant(1.0), (1e19, 1e19 + 2e5), 1));
+        let mut last = 1e19;
+        let mut visited = 0;
+        let walk: ControlFlow<()> = tentative_collisions(
+            &ray,
+            |_| 0.5,
+            &mut Random::new(1, 0, 0),
+            |at, _| {
+                assert!(at.t > last, "stands still at {last}");
+                last = at.t;
+                visited += 1;
+                ControlFlow::Continue(())
+            },
+        );
+        assert!(walk.is_continue() && (50..100).contains(&visited), "{visited}");
+    }
 }

@@ -157,7 +157,8 @@ pub(super) fn tentative_collisions<B>(
         }
         let mut t = segment.start;
         loop {
-            t += random.exponential_f64() / (mu_t * bound);
+            // Far away a step may be less than the rounding of `t`, and must not be lost.
+            t = (t + random.exponential_f64() / (mu_t * bound)).max(t.next_up());
             if t >= segment.end {
                 return ControlFlow::Continue(());
             }
