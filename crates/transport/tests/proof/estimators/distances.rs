@@ -10,7 +10,7 @@ use tyndall_transport::{DistanceSampler, Flight, Lookups, MajorantUse, Repeated,
 use super::effort;
 use super::rays::{Tabulated, along, profiles, rows, scenes, table};
 use crate::fresh;
-use crate::statistics::{kolmogorov_smirnov, normal_cdf, two_sided_quantile};
+use crate::statistics::{confirmed, kolmogorov_smirnov, normal_cdf, two_sided_quantile};
 
 const SAMPLES: u64 = 4000;
 
@@ -124,8 +124,10 @@ fn free_flights_have_the_tabulated_quantiles() {
             for sampler in DistanceSampler::ALL.iter().filter(|sampler| sampler.properties().unbiased) {
                 let share =
                     |flight: &Flight| if flight.t.is_some_and(|t| t < s) { flight.weight } else { 0.0 };
-                let found = repeat_distance(*sampler, &ray, 2000 * effort(), fresh::seed(21), share);
-                let z = found.z(p);
+                let z = confirmed(|times, seed| {
+                    let samples = 2000 * times * effort();
+                    repeat_distance(*sampler, &ray, samples, fresh::seed(21 + seed), share).z(p)
+                });
                 assert!(
                     z.abs() < two_sided_quantile(1e-3 / 500.0),
                     "{}: {row}: {p}: z = {z}",
