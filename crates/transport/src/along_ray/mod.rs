@@ -26,7 +26,7 @@ use crate::way::{Span, Way};
 
 pub use bounding::{Bounding, Control, Extent, Piece};
 pub use profile::Profile;
-pub(crate) use tentative::tentative_collisions;
+pub(crate) use tentative::{further, tentative_collisions};
 
 use bounding::Cell;
 use extinction::Stretch;

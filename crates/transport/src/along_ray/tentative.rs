@@ -30,6 +30,12 @@ impl Tentative<'_> {
     }
 }
 
+/// The distance `t` after a step: far away one may be less than the rounding of `t`, and must not be lost.
+#[inline]
+pub(crate) fn further(t: f64, step: f64) -> f64 {
+    (t + step).max(t.next_up())
+}
+
 /// Visits the tentative collisions under the rate `rate` of each piece, until `visit` breaks.
 pub(crate) fn tentative_collisions<B>(
     ray: &AlongRay,
@@ -45,8 +51,7 @@ pub(crate) fn tentative_collisions<B>(
         }
         let mut t = piece.start;
         loop {
-            // Far away a step may be less than the rounding of `t`, and must not be lost.
-            t = (t + random.exponential_f64() / rate).max(t.next_up());
+            t = further(t, random.exponential_f64() / rate);
             if t >= piece.end {
                 depth += rate * (piece.end - piece.start);
                 return ControlFlow::Continue(());

@@ -49,8 +49,8 @@ impl Engine<'_> {
         path.position = (vertex.position() - self.scene.centre).as_vec3();
 
         let mut traced = false;
-        if path.turns == 1 && !self.seen_at_once.is_empty() {
-            for &number in &self.seen_at_once {
+        if path.turns == 1 && !self.scene.seen_at_once.is_empty() {
+            for &number in &self.scene.seen_at_once {
                 let value = |toward| (vertex.value(toward).truncate(), 0.0);
                 if let Some(Direct { unshadowed, toward, distance, .. }) =
                     light_of(scene, (number, 1.0), vertex.position(), value, path.draws, random)

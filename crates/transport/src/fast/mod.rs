@@ -42,7 +42,7 @@ use march::List;
 use next_event::{choose_correction, choose_direct};
 pub(crate) use pool::Pixel;
 use pool::{GATHERS, OWN, POOL, Path, Rays, SHADOW};
-use sided::{Sided, lights_seen_at_once};
+use sided::Sided;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
@@ -75,8 +75,6 @@ struct Engine<'a> {
     paths: Vec<Path>,
     /// What surfaces need of each path, if there are any.
     sided: Vec<Sided>,
-    /// Lights that are all looked at from the first surface.
-    seen_at_once: Vec<usize>,
     work: Work,
     active: usize,
     is_cancelled: bool,
@@ -158,7 +156,6 @@ impl<'a> Engine<'a> {
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
             sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
-            seen_at_once: lights_seen_at_once(scene.scene),
             work: Work::default(),
             active: 0,
             is_cancelled: false,

@@ -24,11 +24,12 @@ const CERTAIN_CONTRIBUTION: f32 = 0.7;
 /// and 2 and rises by a tenth at 0.25.
 const CERTAIN_DOUBT: f32 = 0.5;
 
+/// What the probability of a shadow ray is multiplied by where the cache knows all lights. Variance times time of scene B is level
+/// between 4 and 12.
+const CERTAIN_CORRECTION: f32 = 4.0;
+
 /// What the cache is trusted with at most: it holds for a place some voxels wide.
 const LEAST_DOUBT: f32 = 0.05;
-
-/// The same factor where the cache knows all lights. Variance times time of scene B is level between 4 and 12.
-const CERTAIN_CORRECTION: f32 = 4.0;
 
 /// Draws a light for the place `from`, and what it would bring by the next event; its direction and distance, or `None`
 /// if there is nothing to trace or roulette, played on the contribution before the shadow ray is paid for, ended it.

@@ -34,7 +34,10 @@ pub(crate) struct FastScene<'a> {
     pub light_cache: Option<LightCache>,
     /// Whether camera rays [gather](super::gather).
     pub(super) gathers: bool,
-    /// Whether that knows all lights, and all are points or parallel light: they are [corrected](super::next_event) one by one.
+    /// Lights that are all looked at from the first surface.
+    pub(super) seen_at_once: Vec<usize>,
+    /// Whether rays gather, the cache knows all lights, and all are points or parallel light: they are [corrected](super::next_event)
+    /// one by one.
     pub(super) knows_all_lights: bool,
     /// Throughput below which paths play roulette; survivors get twice this.
     pub(super) roulette_throughput: f32,
@@ -100,7 +103,8 @@ impl<'a> FastScene<'a> {
         let light_cache = LightCache::new(scene, centre);
         let branches = split::branches(scene);
         let gathers = gather::pays(scene, &volumes, light_cache.as_ref(), branches);
-        let knows_all_lights = gathers && light_cache.is_some() && !lights_seen_at_once(scene).is_empty();
+        let seen_at_once = lights_seen_at_once(scene);
+        let knows_all_lights = gathers && light_cache.is_some() && !seen_at_once.is_empty();
         let roulette_throughput = match (gathers, branches) {
             (_, 2..) => split::ROULETTE_THROUGHPUT / branches as f32,
             (true, _) => gather::ROULETTE_THROUGHPUT,
@@ -115,6 +119,7 @@ impl<'a> FastScene<'a> {
             has_volume_lights,
             light_cache,
             gathers,
+            seen_at_once,
             knows_all_lights,
             roulette_throughput,
             branches,

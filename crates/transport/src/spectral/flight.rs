@@ -16,6 +16,7 @@ use tyndall_lanes::Random;
 use tyndall_scene::{ChannelMedium, Density, Ray, Volume};
 use tyndall_volumes::BrickGrid;
 
+use crate::along_ray::further;
 use crate::way::Way;
 
 /// One free flight.
@@ -157,8 +158,7 @@ pub(super) fn tentative_collisions<B>(
         }
         let mut t = segment.start;
         loop {
-            // Far away a step may be less than the rounding of `t`, and must not be lost.
-            t = (t + random.exponential_f64() / (mu_t * bound)).max(t.next_up());
+            t = further(t, random.exponential_f64() / (mu_t * bound));
             if t >= segment.end {
                 return ControlFlow::Continue(());
             }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
+use tyndall_transport::Repeated;
+
 /// Probability that a standard normal variable is farther than |z| from 0: erfc(|z|/√2).
 pub fn two_sided_tail(z: f64) -> f64 {
     complementary_error_function(z.abs() * FRAC_1_SQRT_2)
@@ -46,18 +48,17 @@ pub fn normal_from_student(t: f64, degrees: f64) -> f64 {
     t * (1.0 - 0.25 / degrees) / (1.0 + 0.5 * t * t / degrees).sqrt()
 }
 
-/// How many times the samples that are asked where a score is beyond [`DOUBTFUL`].
-const AGAIN: u64 = 16;
+/// How many times the samples that are asked where a score is doubtful.
+pub const AGAIN: u64 = 16;
 
 /// Score beyond which it is asked again.
 const DOUBTFUL: f64 = 3.0;
 
-/// A z score, of which `score` takes so many times the usual number of samples, and what to add to their seed. One that is doubtful is
-/// asked again, of more and other samples: where tails are heavy few of them know too little of their own error, while a bias shows
-/// all the more.
-pub fn confirmed(score: impl Fn(u64, u64) -> f64) -> f64 {
-    let z = score(1, 0);
-    if z.abs() <= DOUBTFUL { z } else { score(AGAIN, 1 << 20) }
+/// What was `found` of a mean, unless its score against the `truth` is doubtful: then what `repeat` finds of so many times as many
+/// samples, of seeds moved on by its second argument. Where tails are heavy few samples know too little of their own error, while a bias
+/// shows all the more.
+pub fn confirmed(found: Repeated, truth: f64, repeat: impl Fn(u64, u64) -> Repeated) -> Repeated {
+    if found.z(truth).abs() <= DOUBTFUL { found } else { repeat(AGAIN, 1 << 20) }
 }
 
 /// Mean and standard error of the mean.

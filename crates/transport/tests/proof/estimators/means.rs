@@ -80,7 +80,8 @@ fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
                     );
                     continue;
                 }
-                let z = confirmed(|times, seed| repeat(times, seed).z(*truth));
+                let found = confirmed(found, *truth, repeat);
+                let z = found.z(*truth);
                 if z.abs() > two_sided_quantile(2e-6) {
                     failures.push(format!(
                         "{} in {name} under {bounding:?}: {found:?}, not {truth}, z = {z}",

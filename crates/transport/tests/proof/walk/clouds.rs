@@ -11,6 +11,7 @@ use tyndall_transport::{Measurement, measure};
 
 use super::{options, photons};
 use crate::scenes::write_npy;
+use crate::statistics::AGAIN;
 
 const CAMERA: &str = "camera = { position = [0, 0, 9], target = [0, 0, 0] }";
 
@@ -156,7 +157,7 @@ fn the_columns_of_the_step_cloud_are_those_of_the_consensus() {
         let doubtful = off(1);
         if !doubtful.is_empty() {
             // Radiance has heavy tails, of which few photons know too little.
-            let again = off(16);
+            let again = off(AGAIN);
             let both: Vec<_> =
                 again.iter().filter(|[place, _]| doubtful.iter().any(|[other, _]| place == other)).collect();
             assert!(both.is_empty(), "experiment {}: {both:?}", rows[0][0]);
