@@ -2,13 +2,12 @@
 
 use std::fs::File;
 use std::io::BufReader;
-use std::panic::catch_unwind;
 use std::path::Path;
 
 use exr::block::reader::ChunksReader;
 use exr::prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers, Text};
 
-use tyndall_machine::{files, memory};
+use tyndall_machine::{contained, files, memory};
 
 use crate::error::FileError;
 
@@ -36,14 +35,13 @@ impl Picture {
     /// (`ViewLayer.Combined.R`…), or the luminance Y as grey. Half, float and unsigned channels are read; of several
     /// resolutions only the finest is.
     ///
-    /// It is decoded on this thread alone: where the library that does so trips over damage, it must not take the program
-    /// along.
+    /// It is decoded on this thread alone, so that [`contained`] holds.
     ///
     /// # Errors
     /// If the file cannot be read, is damaged, or holds no such channels.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        catch_unwind(|| Self::decode(path))
-            .unwrap_or_else(|_| Err(FileError::unusable(path, "cannot be read as OpenEXR: it is damaged")))
+        contained(|| Self::decode(path))
+            .unwrap_or_else(|| Err(FileError::unusable(path, "cannot be read as OpenEXR: it is damaged")))
     }
 
     fn decode(path: &Path) -> Result<Self, FileError> {

@@ -4,13 +4,12 @@
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use exr::block::reader::ChunksReader;
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::ImageDecoder;
-use tyndall_machine::{files, memory};
+use tyndall_machine::{contained, files, memory};
 
 use super::image::LightImage;
 use crate::error::SceneError;
@@ -27,6 +26,9 @@ const HDR_TEXELS_A_BYTE: u64 = 16;
 /// Bytes that a block of an OpenEXR picture may unpack to for each byte of the file, beside [`LARGE`]. Blocks are unpacked whole.
 const BLOCK_RATIO: u64 = 64;
 
+/// What is said where the library that decodes a picture panics.
+pub(crate) const UNDECODABLE: &str = "damaged picture: it cannot be decoded";
+
 /// Pictures up to this many bytes of memory are believed as they are.
 const LARGE: u64 = 16 << 20;
 
@@ -39,11 +41,12 @@ pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), Sce
     file.by_ref().take(4).read_to_end(&mut magic).map_err(|error| refuse(error.to_string()))?;
     file.rewind().map_err(|error| refuse(error.to_string()))?;
 
-    let (width, height, texels) = match magic.as_slice() {
-        [0x76, 0x2f, 0x31, 0x01] => read_exr(file, length).map_err(refuse)?,
-        [b'#', b'?', ..] => read_hdr(file, length).map_err(refuse)?,
-        _ => return Err(refuse("is neither an OpenEXR (.exr) nor a Radiance (.hdr) picture".to_owned())),
-    };
+    let texels = contained(|| match magic.as_slice() {
+        [0x76, 0x2f, 0x31, 0x01] => read_exr(file, length),
+        [b'#', b'?', ..] => read_hdr(file, length),
+        _ => Err("is neither an OpenEXR (.exr) nor a Radiance (.hdr) picture".to_owned()),
+    });
+    let (width, height, texels) = texels.unwrap_or_else(|| Err(UNDECODABLE.to_owned())).map_err(refuse)?;
     if texels.is_empty() || width.checked_mul(height) != Some(texels.len()) {
         return Err(refuse("has no texels".to_owned()));
     }
@@ -61,13 +64,8 @@ pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), Sce
 /// Columns, rows, and the texels row by row from the top.
 pub(crate) type Texels = (usize, usize, Vec<[f32; 3]>);
 
-/// Reads a picture on this thread alone: where the library that decodes it trips over damage, it must not take the program along.
-pub(crate) fn read_exr(file: BufReader<File>, length: u64) -> Result<Texels, String> {
-    catch_unwind(AssertUnwindSafe(|| decode_exr(file, length)))
-        .unwrap_or_else(|_| Err("damaged OpenEXR picture: it cannot be decoded".to_owned()))
-}
-
-fn decode_exr(mut file: BufReader<File>, length: u64) -> Result<Texels, String> {
+/// Reads a picture on this thread alone, so that [`contained`] holds.
+pub(crate) fn read_exr(mut file: BufReader<File>, length: u64) -> Result<Texels, String> {
     let damaged = |error: exr::error::Error| match error {
         exr::error::Error::NotSupported(what) => format!("uses an OpenEXR feature that is not read: {what}"),
         other => format!("damaged OpenEXR picture: {other}"),
