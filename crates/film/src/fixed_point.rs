@@ -49,7 +49,7 @@ pub fn to_fixed(x: f32, fraction_bits: i32) -> i128 {
 
 /// `x` as an integer count of 2^-`fraction_bits`, back in floating point.
 pub fn to_f64(x: i128, fraction_bits: i32) -> f64 {
-    x as f64 * 2f64.powi(-fraction_bits)
+    libm::ldexp(x as f64, -fraction_bits)
 }
 
 /// Σx²: 192 bits, least significant word first, [`SQUARE_FRACTION_BITS`] of them fractional.
@@ -107,7 +107,7 @@ pub fn sample_variance(n: u64, sum: i128, squares: SquareSum) -> f64 {
     let magnitude = sum.unsigned_abs();
     let difference = subtract(squares_times_n, product(magnitude, magnitude));
     let n = n as f64;
-    difference * 2f64.powi(-128) / (n * (n - 1.0))
+    libm::ldexp(difference, -128) / (n * (n - 1.0))
 }
 
 /// a·b as two halves of 128 bits, the lower first (schoolbook multiplication).
@@ -126,7 +126,7 @@ fn subtract(a: [u128; 2], b: [u128; 2]) -> f64 {
     }
     let (low, borrow) = a[0].overflowing_sub(b[0]);
     let high = a[1].wrapping_sub(b[1]).wrapping_sub(u128::from(borrow));
-    high as f64 * 2f64.powi(128) + low as f64
+    libm::ldexp(high as f64, 128) + low as f64
 }
 
 #[cfg(test)]

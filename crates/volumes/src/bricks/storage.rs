@@ -127,7 +127,7 @@ impl Bricks {
                 bricks.affine.push([least, step]);
             }
             Bricks::F16(bricks) => {
-                let inverse_scale = f64::from(2.0_f32.powi(112)) / f64::from(bricks.factor);
+                let inverse_scale = libm::ldexp(1.0, 112) / f64::from(bricks.factor);
                 let halves =
                     values.iter().map(|&v| half::f16::from_f64(f64::from(v) * inverse_scale).to_bits());
                 bricks.halves.extend(halves);
@@ -178,7 +178,7 @@ fn half_factor(bounds: Bounds) -> f32 {
     let exponent = if largest > 0.0 && largest.is_finite() { libm::log2f(largest).floor() as i32 } else { 0 };
     // Between 2^-3 and 2^15 halves resolve the range to 2^-21 of its largest value without help.
     let scale = if (-3..15).contains(&exponent) { 0 } else { exponent - 14 };
-    2.0_f32.powi(112 + scale)
+    libm::ldexpf(1.0, 112 + scale)
 }
 
 #[cfg(test)]
