@@ -51,14 +51,16 @@ pub fn normal_from_student(t: f64, degrees: f64) -> f64 {
 /// How many times the samples that are asked where a score is doubtful.
 pub const AGAIN: u64 = 16;
 
-/// Score beyond which it is asked again.
-const DOUBTFUL: f64 = 3.0;
+/// Whether a score is asked again.
+pub fn is_doubtful(z: f64) -> bool {
+    z.is_nan() || z.abs() > 3.0
+}
 
 /// What was `found` of a mean, unless its score against the `truth` is doubtful: then what `repeat` finds of so many times as many
 /// samples, of seeds moved on by its second argument. Where tails are heavy few samples know too little of their own error, while a bias
 /// shows all the more.
 pub fn confirmed(found: Repeated, truth: f64, repeat: impl Fn(u64, u64) -> Repeated) -> Repeated {
-    if found.z(truth).abs() <= DOUBTFUL { found } else { repeat(AGAIN, 1 << 20) }
+    if is_doubtful(found.z(truth)) { repeat(AGAIN, 1 << 20) } else { found }
 }
 
 /// Mean and standard error of the mean.

@@ -172,13 +172,15 @@ fn spectral_tracking_is_unbiased_in_every_channel() {
             let tau = profile.thickness(0.0, length);
             for channel in 0..3 {
                 let truth = (-tint[channel] * tau).exp();
-                let flights = |weight: fn(&ChromaticFlight) -> DVec3| {
-                    Repeated::of(20_000 * effort(), |n, lookups| {
-                        let random = &mut fresh::random(31, number, n);
-                        weight(&ChromaticFlight::sample(&ray, tint, throughput, random, lookups))[channel]
-                    })
-                };
-                for (found, truth) in [(flights(|f| f.escape), truth), (flights(|f| f.weight), 1.0 - truth)] {
+                for (escapes, truth) in [(true, truth), (false, 1.0 - truth)] {
+                    let repeat = |times, seed| {
+                        Repeated::of(20_000 * times * effort(), |n, lookups| {
+                            let random = &mut fresh::random(31 + seed, number, n);
+                            let flight = ChromaticFlight::sample(&ray, tint, throughput, random, lookups);
+                            if escapes { flight.escape[channel] } else { flight.weight[channel] }
+                        })
+                    };
+                    let found = confirmed(repeat(1, 0), truth, repeat);
                     let z = found.z(truth);
                     assert!(
                         z.abs() < two_sided_quantile(1e-3 / 132.0),
