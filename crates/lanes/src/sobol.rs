@@ -83,6 +83,16 @@ impl Stratified {
         Stratified { key, sample: sample as u32 }
     }
 
+    /// The numbers of branch `branch` of `branches` into which the sample splits: points as even over all branches of all samples as
+    /// the sample's own are over the samples, and independent of these. Those of a single branch are the sample's.
+    #[inline]
+    pub fn branch(&self, branch: u32, branches: u32) -> Stratified {
+        let number = u64::from(self.sample) * u64::from(branches) + u64::from(branch);
+        // What goes beyond 2^32 points is a scrambling of its own.
+        let own = (number >> 32).wrapping_add(u64::from(branches - 1).wrapping_mul(STRATIFIED));
+        Stratified { key: self.key.wrapping_add(own), sample: number as u32 }
+    }
+
     /// The first coordinate of the points of set `set`.
     #[inline]
     pub fn point1(&self, set: u32) -> f32 {

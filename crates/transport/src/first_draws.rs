@@ -16,6 +16,10 @@ enum Set {
     Direction,
     /// The distance in the first volume, and which light is asked from there; plus the number of the volume.
     DistanceAndLight,
+    /// In homogeneous media; beyond the number of any volume.
+    LitWay = 1 << 24,
+    /// In homogeneous media, of each branch.
+    Turn,
 }
 
 /// Where the numbers come from.
@@ -96,6 +100,48 @@ impl FirstDraws {
                 let u = stratified.point1(Set::DistanceAndLight as u32 + volume as u32);
                 -tyndall_lanes::ln(1.0 - u)
             }
+        }
+    }
+
+    /// Uniform in (0, 1]: where the camera's ray collides with a homogeneous medium.
+    #[inline(always)]
+    pub fn collision(&self, random: &mut Random) -> f32 {
+        1.0 - match self {
+            Self::Independent => random.f32(),
+            Self::Stratified(stratified) => stratified.point1(Set::DistanceAndLight as u32),
+        }
+    }
+
+    /// Two numbers for the places on the camera's ray that light is looked for from, and two for those on the light.
+    #[inline(always)]
+    pub fn lit_way(&self, random: &mut Random) -> [[f32; 2]; 2] {
+        let [a, b, c, d] = self.four(Set::LitWay, random);
+        [[a, b], [c, d]]
+    }
+
+    /// How the path goes on: a choice, its direction, and where the next ray collides.
+    #[inline(always)]
+    pub fn turn(&self, random: &mut Random) -> [f32; 4] {
+        self.four(Set::Turn, random)
+    }
+
+    /// The numbers of one of several branches, for what all of them draw.
+    #[inline(always)]
+    pub fn of_branch(self, branch: u32, branches: u32) -> Self {
+        match self {
+            Self::Independent => Self::Independent,
+            Self::Stratified(stratified) => Self::Stratified(stratified.branch(branch, branches)),
+        }
+    }
+
+    #[inline(always)]
+    fn four(&self, set: Set, random: &mut Random) -> [f32; 4] {
+        match self {
+            Self::Independent => {
+                let ([a, b], [c, d]) = (random.f32x2(), random.f32x2());
+                [a, b, c, d]
+            }
+            Self::Stratified(stratified) => stratified.point4(set as u32),
         }
     }
 

@@ -85,8 +85,12 @@ impl SurfaceVertex {
 
     /// Draws how the path goes on; `None` if it does not.
     pub fn sample(&self, random: &mut Random) -> Option<SurfaceTurn> {
-        let choice = random.f64();
-        let sample = self.bsdf.sample(self.local(-self.before), choice, [random.f64(), random.f64()])?;
+        self.sample_by(random.f64(), [random.f64(), random.f64()])
+    }
+
+    /// The same by these numbers: one that chooses, and two for the direction.
+    pub fn sample_by(&self, choice: f64, u: [f64; 2]) -> Option<SurfaceTurn> {
+        let sample = self.bsdf.sample(self.local(-self.before), choice, u)?;
         let [x, y, z] = self.frame;
         let direction = (x * sample.wi.x + y * sample.wi.y + z * sample.wi.z).normalize();
         if self.is_two_faced(direction) {

@@ -51,6 +51,22 @@ fn pairs_and_singles_are_the_first_coordinates_of_four() {
     }
 }
 
+/// The branches of an aligned block of samples are points as even as those of so many samples; beyond 2^32 of them they are others.
+#[test]
+fn branches_of_a_block_of_samples_are_a_net() {
+    let branches = |first: u64| -> Vec<[f32; 2]> {
+        let samples = (first..first + 16).map(|sample| Stratified::new(4, 9, sample));
+        samples.flat_map(|sample| (0..4).map(move |branch| sample.branch(branch, 4).point2(3))).collect()
+    };
+    for first in [0, 48, 1 << 20] {
+        for k in 0..=6 {
+            assert_eq!(occupation(&branches(first), [k, 6 - k]), [1; 64]);
+        }
+    }
+    assert_ne!(branches(0), branches(1 << 30));
+    assert_eq!(Stratified::new(4, 9, 5).branch(0, 1), Stratified::new(4, 9, 5));
+}
+
 /// Every aligned block of 2^m samples has one point in each box of area 2^-m, of whatever shape.
 #[test]
 fn each_block_of_pairs_is_a_net() {

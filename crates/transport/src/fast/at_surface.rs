@@ -90,8 +90,9 @@ impl Engine<'_> {
     pub(super) fn turn_at(&mut self, slot: usize, vertex: &SurfaceVertex) {
         let (path, sided) = (&mut self.paths[slot], &mut self.sided[slot]);
         let random = &mut self.rays.random[slot];
+        let [u, v] = path.draws.direction(random).map(f64::from);
         path.draws = FirstDraws::Independent;
-        let onward = vertex.sample(random).filter(|onward| {
+        let onward = vertex.sample_by(random.f64(), [u, v]).filter(|onward| {
             path.throughput *= onward.weight.truncate().as_vec3();
             sided.refraction *= onward.radiance_scale;
             survives_roulette(path, sided.refraction as f32, self.scene.roulette_throughput, random)

@@ -13,7 +13,7 @@
 use std::f32::consts::PI;
 
 use glam::{DVec3, Vec3};
-use tyndall_lanes::{Random, sin_cos_turns};
+use tyndall_lanes::sin_cos_turns;
 
 use super::distances::Place;
 
@@ -62,21 +62,21 @@ impl Targets {
 impl Aim {
     /// A direction at a lamp; `None` for the share of the others.
     #[inline(always)]
-    pub fn sample(&self, random: &mut Random) -> Option<Vec3> {
+    pub fn sample(&self, choice: f32, u: [f32; 2]) -> Option<Vec3> {
         if self.count == 0 {
             return None;
         }
-        let mut u = random.f32();
+        let mut rest = choice;
         for k in 0..self.count {
-            if u < self.share[k] {
-                let [u, v] = random.f32x2();
+            if rest < self.share[k] {
+                let [u, v] = u;
                 let (sin, cos) = sin_cos_turns(0.25 * u);
                 let (sin_azimuth, cos_azimuth) = sin_cos_turns(v);
                 let (first, second) = self.toward[k].any_orthonormal_pair();
                 let across = first * cos_azimuth + second * sin_azimuth;
                 return Some(self.toward[k] * cos + across * sin);
             }
-            u -= self.share[k];
+            rest -= self.share[k];
         }
         None
     }

@@ -69,6 +69,7 @@ impl Lamps {
         scene: &Scene,
         fog: &Fog,
         stretch: &Stretch,
+        [along, u]: [[f32; 2]; 2],
         random: &mut Random,
     ) -> Vec3 {
         let ray = &stretch.ray;
@@ -81,8 +82,7 @@ impl Lamps {
         let light = &scene.lights[number];
         let lamp = &self.all[number];
         let distances = Distances::new(lamp.place.as_ref(), stretch);
-        let t = distances.draw::<N>(random.f32x2());
-        let u = random.f32x2();
+        let t = distances.draw::<N>(along);
         let points = match light {
             Light::Area(area) => Points::of_lamp(area, ray, &t, u),
             Light::Point(point) => Points::of_point(point.position(), point.intensity(), ray, &t),

@@ -29,6 +29,7 @@ use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
 
 use self::lit_way::Lamps;
 use self::stretch::{Fog, Stretch};
+use crate::first_draws::FirstDraws;
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
 use crate::render::{RenderOptions, trace_tiles};
@@ -103,32 +104,42 @@ impl wide::Task for Paths<'_> {
     #[inline(always)]
     fn run(self) -> bool {
         let Paths { homogeneous, tiles, options, cancel } = self;
-        trace_tiles(homogeneous.scene, tiles, options, cancel, |ray, random| homogeneous.trace(ray, random))
+        let trace = |ray, draws, random: &mut Random| homogeneous.trace(ray, draws, random);
+        trace_tiles(homogeneous.scene, tiles, options, cancel, trace)
     }
 }
 
 impl Homogeneous<'_> {
     /// One estimate of the radiance that arrives along `ray`.
     #[inline(always)]
-    fn trace(&self, ray: Ray, random: &mut Random) -> Sample {
+    fn trace(&self, ray: Ray, draws: FirstDraws, random: &mut Random) -> Sample {
         let mut layers = PathLayers::<Vec3>::default();
         let path =
             Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None, turns: 0, scatterings: 0 };
-        if let Some(first) = self.follow(path, &mut layers, random) {
+        let u = draws.collision(random);
+        if let Some(first) = self.follow((path, u), draws, &mut layers, random) {
+            let later = FirstDraws::Independent;
             for branch in 0..BRANCHES {
-                let mut next = self.turn(&first, branch, random);
-                while let Some(path) = next {
-                    let end = self.follow(path, &mut layers, random);
-                    next = end.and_then(|end| self.turn(&end, 0, random));
+                let mut next = self.turn(&first, branch, draws.of_branch(branch, BRANCHES), random);
+                while let Some(onward) = next {
+                    let end = self.follow(onward, later, &mut layers, random);
+                    next = end.and_then(|end| self.turn(&end, 0, later, random));
                 }
             }
         }
         layers.into_sample(|colour| colour.as_dvec3())
     }
 
-    /// Follows the path's ray to its end and adds the light that it passes; where it ends, if it may go on from there.
+    /// Follows the path's ray to its end, with the number `u` for where it collides, and adds the light that it passes; where it
+    /// ends, if it may go on from there.
     #[inline(always)]
-    fn follow(&self, path: Path, layers: &mut PathLayers<Vec3>, random: &mut Random) -> Option<End> {
+    fn follow(
+        &self,
+        (path, u): (Path, f32),
+        draws: FirstDraws,
+        layers: &mut PathLayers<Vec3>,
+        random: &mut Random,
+    ) -> Option<End> {
         let scene = self.scene;
         let is_first = path.turns == 0;
         let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
@@ -136,7 +147,6 @@ impl Homogeneous<'_> {
         let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
         let through = path.throughput * stretch.through;
         // What the path passes by in the end need not be known, but if it shines.
-        let u = 1.0 - random.f32();
         let collision = stretch.collision(u);
         let matters = |met: &Meeting| {
             is_first || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
@@ -155,10 +165,11 @@ impl Homogeneous<'_> {
             return None;
         }
         if let Some(fog) = &self.fog {
+            let u = draws.lit_way(random);
             let lit = if is_first {
-                self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, random)
+                self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, u, random)
             } else {
-                self.lamps.in_scattered::<LATER>(scene, fog, &stretch, random)
+                self.lamps.in_scattered::<LATER>(scene, fog, &stretch, u, random)
             };
             layers.add(path.scatterings + 1, path.throughput * lit);
         }
@@ -168,15 +179,15 @@ impl Homogeneous<'_> {
         if let Some(vertex) = &vertex {
             // Towards the camera with the weight of what gets through, later as often as the path does.
             let weight = if is_first { through } else { path.throughput };
-            layers.add(path.scatterings, weight * self.reflected(vertex, random));
+            layers.add(path.scatterings, weight * self.reflected(vertex, draws, random));
         }
         Some(End { path, stretch, vertex, u })
     }
 
     /// How the path goes on, of the camera's the branch of this number: from a collision, drawn with density μt T, or the surface;
-    /// `None` if it ends there.
+    /// with the number for where it collides next; `None` if it ends there.
     #[inline(always)]
-    fn turn(&self, end: &End, branch: u32, random: &mut Random) -> Option<Path> {
+    fn turn(&self, end: &End, branch: u32, draws: FirstDraws, random: &mut Random) -> Option<(Path, f32)> {
         let End { path, stretch, vertex, u } = end;
         let mut path = *path;
         let mut u = *u;
@@ -185,6 +196,7 @@ impl Homogeneous<'_> {
             u = (u + branch as f32) / BRANCHES as f32;
         }
         let collision = stretch.collision(u);
+        let [choice, v, w, next] = draws.turn(random);
         path.turns += 1;
         match (collision, &self.fog, vertex) {
             (Some(t), Some(fog), _) => {
@@ -196,8 +208,8 @@ impl Homogeneous<'_> {
                 let before = path.ray.direction.as_vec3();
                 let position = stretch.ray.at(f64::from(t));
                 let aim = self.lamps.targets.from(position, stretch.mu_t);
-                let onward = aim.sample(random);
-                let onward = onward.unwrap_or_else(|| fog.phase.sample(before, random.f32x2()));
+                let onward = aim.sample(choice, [v, w]);
+                let onward = onward.unwrap_or_else(|| fog.phase.sample(before, [v, w]));
                 let value = fog.phase.value(before, onward);
                 path.throughput *= value / aim.pdf(onward, value);
                 let pdf = f64::from(value);
@@ -206,7 +218,7 @@ impl Homogeneous<'_> {
                 path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
             }
             (_, _, Some(vertex)) => {
-                let onward = self.leave(vertex, random)?;
+                let onward = self.leave(vertex, [choice, v, w])?;
                 path.throughput *= onward.weight.truncate().as_vec3();
                 path.refraction *= onward.radiance_scale;
                 if !path.survives_roulette(random) {
@@ -220,20 +232,21 @@ impl Homogeneous<'_> {
             }
             _ => return None,
         }
-        Some(path)
+        Some((path, 1.0 - next))
     }
 
     /// How the path goes on from a surface.
     #[inline(always)]
-    fn leave(&self, vertex: &SurfaceVertex, random: &mut Random) -> Option<SurfaceTurn> {
+    fn leave(&self, vertex: &SurfaceVertex, [choice, v, w]: [f32; 3]) -> Option<SurfaceTurn> {
+        let sampled = || vertex.sample_by(choice.into(), [v.into(), w.into()]);
         if !vertex.is_matte() {
-            return vertex.sample(random);
+            return sampled();
         }
         let mu_t = self.fog.as_ref().map_or(0.0, |fog| fog.mu_t);
         let aim = self.lamps.targets.from(vertex.position(), mu_t);
-        let direction = match aim.sample(random) {
+        let direction = match aim.sample(choice, [v, w]) {
             Some(direction) => direction.as_dvec3().normalize(),
-            None => vertex.sample(random)?.direction,
+            None => sampled()?.direction,
         };
         let pdf = vertex.pdf(direction);
         let weight = vertex.value(direction) / f64::from(aim.pdf(direction.as_vec3(), pdf as f32));
@@ -242,15 +255,15 @@ impl Homogeneous<'_> {
 
     /// Light of one lamp that the surface reflects towards the path, after its way through the medium.
     #[inline(always)]
-    fn reflected(&self, vertex: &SurfaceVertex, random: &mut Random) -> Vec3 {
+    fn reflected(&self, vertex: &SurfaceVertex, draws: FirstDraws, random: &mut Random) -> Vec3 {
         if vertex.is_delta() {
             return Vec3::ZERO;
         }
         let from = vertex.position();
-        let Some((number, probability)) = self.scene.choose_light(from, random.f64()) else {
+        let Some((number, probability)) = self.scene.choose_light(from, draws.light(random)) else {
             return Vec3::ZERO;
         };
-        let u = [random.f64(), random.f64()];
+        let u = draws.light_place(random);
         let sample = points::sample(&self.scene.lights[number], from, u);
         let LightSample { toward, distance, .. } = sample;
         let light_pdf = probability * sample.pdf;
