@@ -26,9 +26,6 @@ const HDR_TEXELS_A_BYTE: u64 = 16;
 /// Bytes that a block of an OpenEXR picture may unpack to for each byte of the file, beside [`LARGE`]. Blocks are unpacked whole.
 const BLOCK_RATIO: u64 = 64;
 
-/// What is said where the library that decodes a picture panics.
-pub(crate) const UNDECODABLE: &str = "damaged picture: it cannot be decoded";
-
 /// Pictures up to this many bytes of memory are believed as they are.
 const LARGE: u64 = 16 << 20;
 
@@ -41,12 +38,12 @@ pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), Sce
     file.by_ref().take(4).read_to_end(&mut magic).map_err(|error| refuse(error.to_string()))?;
     file.rewind().map_err(|error| refuse(error.to_string()))?;
 
-    let texels = contained(|| match magic.as_slice() {
+    let texels = decoded(|| match magic.as_slice() {
         [0x76, 0x2f, 0x31, 0x01] => read_exr(file, length),
         [b'#', b'?', ..] => read_hdr(file, length),
         _ => Err("is neither an OpenEXR (.exr) nor a Radiance (.hdr) picture".to_owned()),
     });
-    let (width, height, texels) = texels.unwrap_or_else(|| Err(UNDECODABLE.to_owned())).map_err(refuse)?;
+    let (width, height, texels) = texels.map_err(refuse)?;
     if texels.is_empty() || width.checked_mul(height) != Some(texels.len()) {
         return Err(refuse("has no texels".to_owned()));
     }
@@ -59,6 +56,11 @@ pub fn read_light_image(path: &Path) -> Result<(LightImage, Option<String>), Sce
         )
     });
     Ok((image, warning))
+}
+
+/// What `decode` makes of a picture, also where the library that it asks panics.
+pub(crate) fn decoded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    contained(decode).unwrap_or_else(|| Err("damaged picture: it cannot be decoded".to_owned()))
 }
 
 /// Columns, rows, and the texels row by row from the top.

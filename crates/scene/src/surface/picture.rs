@@ -9,11 +9,11 @@ use std::path::Path;
 use glam::DVec3;
 use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder};
-use tyndall_machine::{contained, files};
+use tyndall_machine::files;
 
 use crate::error::SceneError;
 use crate::light::image_file::{
-    UNDECODABLE, check_size, is_far_more, read_exr, read_hdr, unlikely, why_not_opened,
+    check_size, decoded, is_far_more, read_exr, read_hdr, unlikely, why_not_opened,
 };
 
 /// Bytes that the buffers for a PNG's rows may take.
@@ -51,9 +51,7 @@ impl Picture {
 
     /// Reads a file; `srgb` says whether its numbers are sRGB-coded, if it is not as usual for its kind.
     pub fn read(path: &Path, srgb: Option<bool>) -> Result<Picture, SceneError> {
-        contained(|| read(path, srgb))
-            .unwrap_or_else(|| Err(UNDECODABLE.to_owned()))
-            .map_err(|message| SceneError::file(path, message))
+        decoded(|| read(path, srgb)).map_err(|message| SceneError::file(path, message))
     }
 
     /// Texels in a row.

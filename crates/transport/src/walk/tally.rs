@@ -122,11 +122,11 @@ fn has_place(x: f64) -> bool {
 }
 
 fn to_fixed(x: f64, bits: i32) -> i128 {
-    (x * 2_f64.powi(bits)).round() as i128
+    libm::ldexp(x, bits).round() as i128
 }
 
 fn to_f64(x: i128, bits: i32) -> f64 {
-    x as f64 * 2_f64.powi(-bits)
+    libm::ldexp(x as f64, -bits)
 }
 
 /// What one photon has brought so far, of each tally.

@@ -18,9 +18,7 @@ use crate::fresh;
 use crate::rendering::render;
 use crate::scenes::{scene, scene_in, two_halves, with_next_event, write_random_npy};
 use crate::slab::{Row, rows};
-use crate::statistics::{
-    AGAIN, is_doubtful, kolmogorov_smirnov, mean_and_error, normal_cdf, two_sided_quantile,
-};
+use crate::statistics::{confirmed, kolmogorov_smirnov, mean_and_error, normal_cdf, two_sided_quantile};
 
 /// Batches of pictures of the crowd.
 pub const BATCHES: u64 = 16;
@@ -170,7 +168,8 @@ fn a_slab_of_three_media_reflects_and_transmits_what_adding_doubling_says_of_eac
             let truths = [0, 1, 2].map(|channel| triple[channel].truth[0][usize::from(!from_above)]);
             // With few paths that bring anything their own spread is no guide; at most they bring 3 each.
             let is_normal = |channel: usize| truths[channel] * paths as f64 > 300.0;
-            let found = |paths: u64, seed: u64| {
+            let found = |times: u64, seed: u64| {
+                let paths = times * paths;
                 let mut values: [Vec<f64>; 3] = Default::default();
                 for path in 0..paths {
                     let mut random = fresh::random(41 + u64::from(from_above) + seed, first as u64, path);
@@ -189,10 +188,7 @@ fn a_slab_of_three_media_reflects_and_transmits_what_adding_doubling_says_of_eac
                 })
             };
             // What few paths bring, 3 each, sets mean and spread together: by too few of them both are small.
-            let mut means = found(paths, 0);
-            if means.iter().any(|(.., z)| is_doubtful(*z)) {
-                means = found(AGAIN * paths, 1 << 20);
-            }
+            let means = confirmed(found(1, 0), |means| means.map(|(.., z)| z), found);
             for (channel, ((mean, error, z), Row { albedo, tau, g, .. })) in
                 means.into_iter().zip(&triple).enumerate()
             {

@@ -15,7 +15,7 @@ use tyndall_transport::trace;
 use crate::fresh;
 use crate::rendering::render;
 use crate::scenes::{scene, two_halves, with_next_event};
-use crate::statistics::{AGAIN, is_doubtful, kolmogorov_smirnov, normal_cdf};
+use crate::statistics::{confirmed, kolmogorov_smirnov, normal_cdf};
 
 /// Paths for each medium and incidence.
 const PATHS: u64 = 4096;
@@ -76,7 +76,8 @@ impl Family {
     /// small together.
     fn add(&mut self, name: &str, truth: [f64; 2], results: impl Fn(u64, u64) -> [(f64, f64); 2]) {
         let is_normal = |i: usize| truth[i] * PATHS as f64 >= FEWEST_FOR_NORMAL_LAW;
-        let scored = |paths: u64, seed: u64| {
+        let scored = |times: u64, seed: u64| {
+            let paths = times * PATHS;
             let found = results(paths, seed);
             [0, 1].map(|i| {
                 let (mean, error) = found[i];
@@ -87,10 +88,7 @@ impl Family {
                 (mean, error, (mean - truth[i]) / error)
             })
         };
-        let mut found = scored(PATHS, 0);
-        if found.iter().any(|(.., z)| is_doubtful(*z)) {
-            found = scored(AGAIN * PATHS, 1 << 20);
-        }
+        let found = confirmed(scored(1, 0), |found| found.map(|(.., z)| z), scored);
         for (i, (mean, error, z)) in found.into_iter().enumerate() {
             assert!(z.abs() < 4.0, "{name} {}: {mean} +- {error}, not {}, z = {z}", ["R", "T"][i], truth[i]);
             if is_normal(i) {

@@ -2,8 +2,6 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use tyndall_transport::Repeated;
-
 /// Probability that a standard normal variable is farther than |z| from 0: erfc(|z|/√2).
 pub fn two_sided_tail(z: f64) -> f64 {
     complementary_error_function(z.abs() * FRAC_1_SQRT_2)
@@ -52,15 +50,18 @@ pub fn normal_from_student(t: f64, degrees: f64) -> f64 {
 pub const AGAIN: u64 = 16;
 
 /// Whether a score is asked again.
-pub fn is_doubtful(z: f64) -> bool {
+fn is_doubtful(z: f64) -> bool {
     z.is_nan() || z.abs() > 3.0
 }
 
-/// What was `found` of a mean, unless its score against the `truth` is doubtful: then what `repeat` finds of so many times as many
-/// samples, of seeds moved on by its second argument. Where tails are heavy few samples know too little of their own error, while a bias
-/// shows all the more.
-pub fn confirmed(found: Repeated, truth: f64, repeat: impl Fn(u64, u64) -> Repeated) -> Repeated {
-    if is_doubtful(found.z(truth)) { repeat(AGAIN, 1 << 20) } else { found }
+/// What was `found`, unless a score of it is doubtful: then what `repeat` finds of so many times as many samples, of seeds moved on by its
+/// second argument. Where tails are heavy few samples know too little of their own error, while a bias shows all the more.
+pub fn confirmed<T, const N: usize>(
+    found: T,
+    scores: impl Fn(&T) -> [f64; N],
+    repeat: impl Fn(u64, u64) -> T,
+) -> T {
+    if scores(&found).into_iter().any(is_doubtful) { repeat(AGAIN, 1 << 20) } else { found }
 }
 
 /// Mean and standard error of the mean.

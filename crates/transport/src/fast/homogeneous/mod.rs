@@ -114,15 +114,21 @@ impl Homogeneous<'_> {
     #[inline(always)]
     fn trace(&self, ray: Ray, draws: FirstDraws, random: &mut Random) -> Sample {
         let mut layers = PathLayers::<Vec3>::default();
-        let path =
-            Path { ray, throughput: Vec3::ONE, refraction: 1.0, turn: Turn::None, turns: 0, scatterings: 0 };
-        let u = draws.collision(random);
-        if let Some(first) = self.follow((path, u), draws, &mut layers, random) {
+        let path = Path {
+            ray,
+            u: draws.collision(random),
+            throughput: Vec3::ONE,
+            refraction: 1.0,
+            turn: Turn::None,
+            turns: 0,
+            scatterings: 0,
+        };
+        if let Some(first) = self.follow(path, draws, &mut layers, random) {
             let later = FirstDraws::Independent;
             for branch in 0..BRANCHES {
                 let mut next = self.turn(&first, branch, draws.of_branch(branch, BRANCHES), random);
-                while let Some(onward) = next {
-                    let end = self.follow(onward, later, &mut layers, random);
+                while let Some(path) = next {
+                    let end = self.follow(path, later, &mut layers, random);
                     next = end.and_then(|end| self.turn(&end, 0, later, random));
                 }
             }
@@ -130,12 +136,11 @@ impl Homogeneous<'_> {
         layers.into_sample(|colour| colour.as_dvec3())
     }
 
-    /// Follows the path's ray to its end, with the number `u` for where it collides, and adds the light that it passes; where it
-    /// ends, if it may go on from there.
+    /// Follows the path's ray to its end and adds the light that it passes; where it ends, if it may go on from there.
     #[inline(always)]
     fn follow(
         &self,
-        (path, u): (Path, f32),
+        path: Path,
         draws: FirstDraws,
         layers: &mut PathLayers<Vec3>,
         random: &mut Random,
@@ -147,7 +152,7 @@ impl Homogeneous<'_> {
         let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
         let through = path.throughput * stretch.through;
         // What the path passes by in the end need not be known, but if it shines.
-        let collision = stretch.collision(u);
+        let collision = stretch.collision(path.u);
         let matters = |met: &Meeting| {
             is_first || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
         };
@@ -181,22 +186,22 @@ impl Homogeneous<'_> {
             let weight = if is_first { through } else { path.throughput };
             layers.add(path.scatterings, weight * self.reflected(vertex, draws, random));
         }
-        Some(End { path, stretch, vertex, u })
+        Some(End { path, stretch, vertex })
     }
 
     /// How the path goes on, of the camera's the branch of this number: from a collision, drawn with density μt T, or the surface;
-    /// with the number for where it collides next; `None` if it ends there.
+    /// `None` if it ends there.
     #[inline(always)]
-    fn turn(&self, end: &End, branch: u32, draws: FirstDraws, random: &mut Random) -> Option<(Path, f32)> {
-        let End { path, stretch, vertex, u } = end;
+    fn turn(&self, end: &End, branch: u32, draws: FirstDraws, random: &mut Random) -> Option<Path> {
+        let End { path, stretch, vertex } = end;
         let mut path = *path;
-        let mut u = *u;
         if path.turns == 0 {
             path.throughput /= BRANCHES as f32;
-            u = (u + branch as f32) / BRANCHES as f32;
+            path.u = (path.u + branch as f32) / BRANCHES as f32;
         }
-        let collision = stretch.collision(u);
+        let collision = stretch.collision(path.u);
         let [choice, v, w, next] = draws.turn(random);
+        path.u = 1.0 - next;
         path.turns += 1;
         match (collision, &self.fog, vertex) {
             (Some(t), Some(fog), _) => {
@@ -232,7 +237,7 @@ impl Homogeneous<'_> {
             }
             _ => return None,
         }
-        Some((path, 1.0 - next))
+        Some(path)
     }
 
     /// How the path goes on from a surface.
@@ -332,14 +337,14 @@ struct End {
     stretch: Stretch,
     /// The surface there, if the path may come to it.
     vertex: Option<SurfaceVertex>,
-    /// Number in (0, 1] by which collisions are drawn; those of several branches are spread evenly.
-    u: f32,
 }
 
 /// A path under way.
 #[derive(Clone, Copy)]
 struct Path {
     ray: Ray,
+    /// Number in (0, 1] by which the ray's collision is drawn; those of several branches are spread evenly.
+    u: f32,
     throughput: Vec3,
     /// The part of the throughput that is due to refraction, which roulette leaves out.
     refraction: f64,

@@ -128,7 +128,7 @@ fn free_flights_have_the_tabulated_quantiles() {
                     let samples = 2000 * times * effort();
                     repeat_distance(*sampler, &ray, samples, fresh::seed(21 + seed), share)
                 };
-                let z = confirmed(repeat(1, 0), p, repeat).z(p);
+                let z = confirmed(repeat(1, 0), |found| [found.z(p)], repeat).z(p);
                 assert!(
                     z.abs() < two_sided_quantile(1e-3 / 500.0),
                     "{}: {row}: {p}: z = {z}",
@@ -180,7 +180,7 @@ fn spectral_tracking_is_unbiased_in_every_channel() {
                             if escapes { flight.escape[channel] } else { flight.weight[channel] }
                         })
                     };
-                    let found = confirmed(repeat(1, 0), truth, repeat);
+                    let found = confirmed(repeat(1, 0), |found| [found.z(truth)], repeat);
                     let z = found.z(truth);
                     assert!(
                         z.abs() < two_sided_quantile(1e-3 / 132.0),

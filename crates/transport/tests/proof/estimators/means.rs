@@ -80,7 +80,7 @@ fn every_unbiased_estimator_has_the_transmittance_as_its_mean() {
                     );
                     continue;
                 }
-                let found = confirmed(found, *truth, repeat);
+                let found = confirmed(found, |found| [found.z(*truth)], repeat);
                 let z = found.z(*truth);
                 if z.abs() > two_sided_quantile(2e-6) {
                     failures.push(format!(
