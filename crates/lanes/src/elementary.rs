@@ -34,7 +34,8 @@ pub fn exp(x: f32) -> f32 {
     let turns = clamped * std::f32::consts::LOG2_E;
     // Adding and taking off 1.5·2^23 rounds to the nearest integer without a call.
     const ROUND: f32 = 12_582_912.0;
-    let whole = (turns + ROUND) - ROUND;
+    let rounded = turns + ROUND;
+    let whole = rounded - ROUND;
     let f = (clamped - whole * 0.693_359_4) - whole * -2.121_944_4e-4;
     let g = f * std::f32::consts::LOG2_E;
     let mut p = 1.546_534_3e-4_f32;
@@ -44,7 +45,8 @@ pub fn exp(x: f32) -> f32 {
     p = p * g + 0.240_226_5;
     p = p * g + std::f32::consts::LN_2;
     p = p * g + 1.0;
-    let scale = f32::from_bits(((whole as i32 + 127) as u32) << 23);
+    // The integer stands in the low bits: to convert it would keep loops from becoming vector code.
+    let scale = f32::from_bits(rounded.to_bits().wrapping_add(127) << 23);
     if x < -87.0 { 0.0 } else { p * scale }
 }
 
@@ -53,13 +55,14 @@ pub fn exp(x: f32) -> f32 {
 pub fn sin_cos_turns(u: f32) -> (f32, f32) {
     // u = k/4 + r with r in [−1/8, 1/8]
     const ROUND: f32 = 12_582_912.0;
-    let quarters = (u * 4.0 + ROUND) - ROUND;
+    let rounded = u * 4.0 + ROUND;
+    let quarters = rounded - ROUND;
     let r = u - quarters * 0.25;
     let r2 = r * r;
     let sin =
         r * (std::f32::consts::TAU + r2 * (-41.341_7 + r2 * (81.605_2 + r2 * (-76.698_73 + r2 * 41.503_42))));
     let cos = 1.0 + r2 * (-19.739_209 + r2 * (64.939_33 + r2 * (-85.444_35 + r2 * 59.273_62)));
-    let quadrant = quarters as i32;
+    let quadrant = rounded.to_bits();
     let (a, b) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
     let sin_sign = if quadrant & 2 == 0 { 1.0 } else { -1.0 };
     let cos_sign = if (quadrant + 1) & 2 == 0 { 1.0 } else { -1.0 };

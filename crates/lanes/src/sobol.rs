@@ -65,6 +65,30 @@ const fn directions() -> [[u32; 4]; 32] {
     directions
 }
 
+/// What each value of each four bits of i adds up to.
+const SUMS: [[[u32; 4]; 16]; 8] = sums();
+
+const fn sums() -> [[[u32; 4]; 16]; 8] {
+    let mut sums = [[[0; 4]; 16]; 8];
+    let mut place = 0;
+    while place < 8 {
+        let mut value = 1;
+        while value < 16 {
+            // The sum without the highest bit, and that bit's.
+            let bit = 7 - (value as u8).leading_zeros() as usize;
+            let (rest, last) = (sums[place][value & !(1 << bit)], DIRECTIONS[4 * place + bit]);
+            let mut coordinate = 0;
+            while coordinate < 4 {
+                sums[place][value][coordinate] = rest[coordinate] ^ last[coordinate];
+                coordinate += 1;
+            }
+            value += 1;
+        }
+        place += 1;
+    }
+    sums
+}
+
 /// The stratified numbers of one sample of one pixel: sets of up to four coordinates, each in [0, 1) and a multiple of
 /// 2^-24. Different sets, pixels and seeds are independent of each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,8 +144,12 @@ impl Stratified {
         let [second, third] = halves(self.hash(set, 1));
         let [fourth, _] = halves(self.hash(set, 2));
         let [x, y, z, w] = coordinates(self.index(order));
-        [scrambled(x, first), scrambled(y, second), scrambled(z, third), scrambled(w, fourth)]
-            .map(|coordinate| to_unit(coordinate.reverse_bits()))
+        let [x, y] = [scrambled(x, first), scrambled(y, second)];
+        let [z, w] = [scrambled(z, third), scrambled(w, fourth)];
+        // Two reversals for the price of one.
+        let [y, x] = halves((u64::from(x) << 32 | u64::from(y)).reverse_bits());
+        let [w, z] = halves((u64::from(z) << 32 | u64::from(w)).reverse_bits());
+        [to_unit(x), to_unit(y), to_unit(z), to_unit(w)]
     }
 
     #[inline(always)]
@@ -141,10 +169,10 @@ impl Stratified {
 #[inline(always)]
 fn coordinates(index: u32) -> [u32; 4] {
     let mut point = [0; 4];
-    for (bit, directions) in DIRECTIONS.iter().enumerate() {
-        let is_set = (index >> bit & 1).wrapping_neg();
-        for (coordinate, direction) in point.iter_mut().zip(directions) {
-            *coordinate ^= direction & is_set;
+    for (place, sums) in SUMS.iter().enumerate() {
+        let sum = sums[(index >> (4 * place)) as usize % 16];
+        for coordinate in 0..4 {
+            point[coordinate] ^= sum[coordinate];
         }
     }
     point

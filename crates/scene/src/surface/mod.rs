@@ -15,6 +15,7 @@ mod mesh;
 mod picture;
 mod pieces;
 mod placed;
+mod side_by_side;
 mod sphere;
 mod square;
 mod texture;
@@ -35,6 +36,7 @@ pub use self::material::{ConductorIndex, Material};
 pub use self::mesh::{Mesh, read_mesh, write_ply};
 pub use self::picture::Picture;
 use self::placed::{Geometry, Placed};
+pub use self::side_by_side::{LANES, RayGroup};
 pub use self::texture::{Colour, ImageLookup, Placement, Texture};
 pub use self::world_primitive::{SurfacePoint, WorldPrimitive};
 use crate::Ray;
@@ -137,6 +139,18 @@ impl Surfaces {
         if self.others.is_empty() { nearest } else { self.meet_others(ray, end, nearest) }
     }
 
+    /// What each of some rays meets.
+    #[inline(always)]
+    pub fn meet_all(&self, rays: &RayGroup) -> [Option<Meeting>; LANES] {
+        let mut meetings = self.flats.intersect_all(rays);
+        if !self.others.is_empty() {
+            for (k, meeting) in meetings.iter_mut().enumerate() {
+                *meeting = self.meet_others(&rays.ray(k), rays.end[k], *meeting);
+            }
+        }
+        meetings
+    }
+
     #[inline(never)]
     fn meet_others(&self, ray: &Ray, end: f64, nearest: Option<Meeting>) -> Option<Meeting> {
         let mut nearest = nearest;
@@ -160,6 +174,18 @@ impl Surfaces {
     #[inline(always)]
     pub fn stand_in(&self, ray: &Ray, end: f64) -> bool {
         self.flats.stand_in(ray, end) || (!self.others.is_empty() && self.others_stand_in(ray, end))
+    }
+
+    /// Whether any surface is in the way of each of some rays.
+    #[inline(always)]
+    pub fn stand_in_all(&self, rays: &RayGroup) -> [bool; LANES] {
+        let mut met = self.flats.stand_in_all(rays);
+        if !self.others.is_empty() {
+            for (k, met) in met.iter_mut().enumerate() {
+                *met = *met || self.others_stand_in(&rays.ray(k), rays.end[k]);
+            }
+        }
+        met
     }
 
     #[inline(never)]

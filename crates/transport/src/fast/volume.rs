@@ -260,6 +260,9 @@ fn looked_up(volume: &Volume, position: DVec3) -> (Vec3, Vec3) {
     (albedo.as_vec3(), ((DVec3::ONE - albedo) * volume.emission_at(position)).as_vec3())
 }
 
+/// 1/(4π).
+const INVERSE_SPHERE: f32 = 0.25 * std::f32::consts::FRAC_1_PI;
+
 /// A phase function in f32, of which [`PhaseFunction`] is the oracle; the less common ones are left to it.
 #[derive(Clone, Copy)]
 pub(crate) enum Phase<'a> {
@@ -284,15 +287,9 @@ impl<'a> Phase<'a> {
     /// Value in 1/sr between unit vectors of travel.
     #[inline(always)]
     pub fn value(self, before: Vec3, after: Vec3) -> f32 {
-        const INVERSE_SPHERE: f32 = 0.25 * std::f32::consts::FRAC_1_PI;
         match self {
             Phase::Isotropic => INVERSE_SPHERE,
-            Phase::HenyeyGreenstein { g } => {
-                let cos_theta = before.dot(after);
-                // (1 − g)² + 2g(1 − cos) keeps its digits at the forward peak.
-                let denominator = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cos_theta);
-                INVERSE_SPHERE * (1.0 - g * g) / (denominator * denominator.sqrt())
-            }
+            Phase::HenyeyGreenstein { g } => henyey_greenstein(g, before.dot(after)),
             Phase::Other(phase) => other_value(phase, before, after),
         }
     }
@@ -306,17 +303,34 @@ impl<'a> Phase<'a> {
         }
     }
 
-    /// Values for directions afterwards that are given by component.
+    /// Values for directions before, one for each way, and some for each of them afterwards; all by component.
     #[inline(always)]
-    pub fn values<const N: usize>(self, before: Vec3, after: &[[f32; N]; 3]) -> [f32; N] {
-        let mut values = [0.0; N];
-        if let Phase::Other(phase) = self {
-            for k in 0..N {
-                values[k] = other_value(phase, before, Vec3::new(after[0][k], after[1][k], after[2][k]));
+    pub fn values<const W: usize, const N: usize>(
+        self,
+        before: &[[f32; W]; 3],
+        after: &[[[f32; W]; N]; 3],
+    ) -> [[f32; W]; N] {
+        let mut values = [[INVERSE_SPHERE; W]; N];
+        match self {
+            Phase::Isotropic => {}
+            Phase::HenyeyGreenstein { g } => {
+                for k in 0..N {
+                    for w in 0..W {
+                        let cos_theta = before[0][w] * after[0][k][w]
+                            + before[1][w] * after[1][k][w]
+                            + before[2][w] * after[2][k][w];
+                        values[k][w] = henyey_greenstein(g, cos_theta);
+                    }
+                }
             }
-        } else {
-            for k in 0..N {
-                values[k] = self.value(before, Vec3::new(after[0][k], after[1][k], after[2][k]));
+            Phase::Other(phase) => {
+                for k in 0..N {
+                    for w in 0..W {
+                        let before = Vec3::new(before[0][w], before[1][w], before[2][w]);
+                        let after = Vec3::new(after[0][k][w], after[1][k][w], after[2][k][w]);
+                        values[k][w] = other_value(phase, before, after);
+                    }
+                }
             }
         }
         values
@@ -348,6 +362,13 @@ impl<'a> Phase<'a> {
             Phase::Other(phase) => phase.projected_area(direction.as_dvec3()) as f32,
         }
     }
+}
+
+#[inline(always)]
+fn henyey_greenstein(g: f32, cos_theta: f32) -> f32 {
+    // (1 − g)² + 2g(1 − cos) keeps its digits at the forward peak.
+    let denominator = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cos_theta);
+    INVERSE_SPHERE * (1.0 - g * g) / (denominator * denominator.sqrt())
 }
 
 // Out of line, to keep them out of the way of the common kinds. The directions are made unit vectors to the last digit

@@ -30,96 +30,129 @@ pub(super) struct Place {
     pub softening: f64,
 }
 
-/// The mixture.
-pub(super) struct Distances {
-    length: f32,
+/// The mixtures of `W` ways, side by side.
+pub(super) struct Distances<const W: usize> {
+    length: [f32; W],
     mu_t: f32,
-    /// None of a light at infinity.
-    equiangular: Option<Equiangular>,
+    equiangular: Equiangular<W>,
     /// Share of the equiangular distances: all of them, half, or none.
-    share: f32,
-    /// 1 − T of the whole stretch; none where the others are uniform.
-    opacity: Option<f32>,
+    share: [f32; W],
+    /// 1 − T of the whole stretch; 0 where the distances that are not equiangular are uniform.
+    opacity: [f32; W],
 }
 
-/// As `distance::equiangular`, by cosine and sine of the first angle and the difference of both.
-#[derive(Clone, Copy)]
-struct Equiangular {
-    nearest: f32,
-    distance: f32,
-    first: [f32; 2],
+/// As `distance::equiangular`, by cosine and sine of the first angle and the difference of both. Where there are no such distances
+/// it is anything.
+struct Equiangular<const W: usize> {
+    nearest: [f32; W],
+    distance: [f32; W],
+    first_cos: [f32; W],
+    first_sin: [f32; W],
     /// In turns.
-    angle: f32,
-    end: f32,
+    angle: [f32; W],
+    end: [f32; W],
 }
 
-impl Distances {
+impl<const W: usize> Distances<W> {
+    /// None on any way yet, in a medium of this extinction.
     #[inline(always)]
-    pub fn new(place: Option<&Place>, stretch: &Stretch) -> Self {
-        let Stretch { length, mu_t, .. } = *stretch;
-        let thickness = mu_t * length;
-        let equiangular =
-            place.and_then(|place| Equiangular::new(place, &stretch.ray, length.min(DEEP / mu_t)));
-        let share = match &equiangular {
-            None => 0.0,
-            Some(_) if thickness < THICK => 1.0,
-            Some(_) => 0.5,
+    pub fn new(mu_t: f32) -> Self {
+        let one = [1.0; W];
+        let equiangular = Equiangular {
+            nearest: [0.0; W],
+            distance: one,
+            first_cos: one,
+            first_sin: [0.0; W],
+            angle: one,
+            end: one,
         };
-        let opacity = (thickness >= EVEN).then_some(1.0 - stretch.through);
-        Self { length, mu_t, equiangular, share, opacity }
+        Self { length: one, mu_t, equiangular, share: one, opacity: [0.0; W] }
     }
 
-    /// `N` distances, an even number of them, by a number in [0, 1) for either kind.
+    /// Those on the stretch of way `w`, for a lamp at this place, or a light at infinity.
     #[inline(always)]
-    pub fn draw<const N: usize>(&self, u: [f32; 2]) -> [f32; N] {
-        let mut t = [0.0; N];
-        let first = (self.share * N as f32) as usize;
-        if let Some(equiangular) = &self.equiangular {
-            let scale = 1.0 / first as f32;
-            for (k, t) in t[..first].iter_mut().enumerate() {
-                *t = equiangular.at((k as f32 + u[0]) * scale);
+    pub fn set(&mut self, w: usize, place: Option<&Place>, stretch: &Stretch) {
+        let Stretch { length, mu_t, .. } = *stretch;
+        let thickness = mu_t * length;
+        let has_equiangular = match place {
+            Some(place) => self.equiangular.set(w, place, &stretch.ray, length.min(DEEP / mu_t)),
+            None => false,
+        };
+        self.length[w] = length;
+        self.share[w] = match has_equiangular {
+            false => 0.0,
+            true if thickness < THICK => 1.0,
+            true => 0.5,
+        };
+        self.opacity[w] = if thickness >= EVEN { 1.0 - stretch.through } else { 0.0 };
+    }
+
+    /// `N` distances for each way, an even number of them, by a number in [0, 1) for either kind.
+    #[inline(always)]
+    pub fn draw<const N: usize>(&self, u: &[[f32; W]; 2]) -> [[f32; W]; N] {
+        let mut t = [[0.0; W]; N];
+        for (k, t) in t.iter_mut().enumerate() {
+            for w in 0..W {
+                let first = self.share[w] * N as f32;
+                t[w] = self.equiangular.at(w, (k as f32 + u[0][w]) * (1.0 / first));
             }
         }
-        let scale = 1.0 / (N - first) as f32;
-        for (k, t) in t[first..].iter_mut().enumerate() {
-            let u = (k as f32 + u[1]) * scale;
-            *t = match self.opacity {
-                None => u * self.length,
-                Some(opacity) => -tyndall_lanes::ln(1.0 - u * opacity) / self.mu_t,
-            };
+        if !self.are_all_equiangular() {
+            for (k, t) in t.iter_mut().enumerate() {
+                for w in 0..W {
+                    let first = self.share[w] * N as f32;
+                    let u = ((k as f32 - first) + u[1][w]) * (1.0 / (N as f32 - first));
+                    let even = u * self.length[w];
+                    let by_transmittance = -tyndall_lanes::ln(1.0 - u * self.opacity[w]) / self.mu_t;
+                    let other = if self.opacity[w] == 0.0 { even } else { by_transmittance };
+                    t[w] = if (k as f32) < first { t[w] } else { other };
+                }
+            }
         }
         for t in &mut t {
-            *t = t.max(0.0).min(self.length);
+            for (t, length) in t.iter_mut().zip(&self.length) {
+                *t = t.max(0.0).min(*length);
+            }
         }
         t
     }
 
     /// Densities of distances, per length, where the transmittance is known.
     #[inline(always)]
-    pub fn pdfs<const N: usize>(&self, t: &[f32; N], transmittance: &[f32; N]) -> [f32; N] {
-        let mut pdf = [0.0; N];
-        if let Some(equiangular) = &self.equiangular {
-            for k in 0..N {
-                pdf[k] = self.share * equiangular.pdf(t[k]);
+    pub fn pdfs<const N: usize>(&self, t: &[[f32; W]; N], transmittance: &[[f32; W]; N]) -> [[f32; W]; N] {
+        let mut pdf = [[0.0; W]; N];
+        for k in 0..N {
+            for w in 0..W {
+                pdf[k][w] = self.share[w] * self.equiangular.pdf(w, t[k][w]);
             }
         }
-        if self.share < 1.0 {
-            let rest = 1.0 - self.share;
+        if !self.are_all_equiangular() {
             for k in 0..N {
-                pdf[k] += match self.opacity {
-                    None => rest / self.length,
-                    Some(opacity) => rest * self.mu_t * transmittance[k] / opacity,
-                };
+                for w in 0..W {
+                    let rest = 1.0 - self.share[w];
+                    let even = rest / self.length[w];
+                    let by_transmittance = rest * self.mu_t * transmittance[k][w] / self.opacity[w];
+                    pdf[k][w] += if self.opacity[w] == 0.0 { even } else { by_transmittance };
+                }
             }
         }
         pdf
     }
+
+    #[inline(always)]
+    fn are_all_equiangular(&self) -> bool {
+        let mut least = 1.0_f32;
+        for w in 0..W {
+            least = least.min(self.share[w]);
+        }
+        least == 1.0
+    }
 }
 
-impl Equiangular {
-    /// None where angles do not tell places on the ray from each other.
+impl<const W: usize> Equiangular<W> {
+    /// `false` where angles do not tell places on the ray from each other.
     #[inline(always)]
-    fn new(place: &Place, ray: &Ray, end: f32) -> Option<Self> {
+    fn set(&mut self, w: usize, place: &Place, ray: &Ray, end: f32) -> bool {
         let offset = place.center - ray.origin;
         let nearest = offset.dot(ray.direction);
         let beside = (offset - ray.direction * nearest).length_squared();
@@ -127,30 +160,32 @@ impl Equiangular {
         let (a, b) = (-nearest, f64::from(end) - nearest);
         let angle = libm::atan2(distance * (b - a), distance * distance + a * b);
         let scale = 1.0 / (distance * distance + a * a).sqrt();
-        let is_usable = distance > 1e-6 * f64::from(end) && angle > 0.0;
-        is_usable.then_some(Self {
-            nearest: nearest as f32,
-            distance: distance as f32,
-            first: [(distance * scale) as f32, (a * scale) as f32],
-            angle: (angle * (0.5 * std::f64::consts::FRAC_1_PI)) as f32,
-            end,
-        })
+        if distance <= 1e-6 * f64::from(end) || angle <= 0.0 {
+            return false;
+        }
+        self.nearest[w] = nearest as f32;
+        self.distance[w] = distance as f32;
+        self.first_cos[w] = (distance * scale) as f32;
+        self.first_sin[w] = (a * scale) as f32;
+        self.angle[w] = (angle * (0.5 * std::f64::consts::FRAC_1_PI)) as f32;
+        self.end[w] = end;
+        true
     }
 
     #[inline(always)]
-    fn at(&self, u: f32) -> f32 {
-        let (sin, cos) = sin_cos_turns(self.angle * u);
-        let [first_cos, first_sin] = self.first;
+    fn at(&self, w: usize, u: f32) -> f32 {
+        let (sin, cos) = sin_cos_turns(self.angle[w] * u);
+        let (first_cos, first_sin) = (self.first_cos[w], self.first_sin[w]);
         let tangent = (first_sin * cos + first_cos * sin) / (first_cos * cos - first_sin * sin);
-        (self.nearest + self.distance * tangent).min(self.end)
+        (self.nearest[w] + self.distance[w] * tangent).min(self.end[w])
     }
 
     #[inline(always)]
-    fn pdf(&self, t: f32) -> f32 {
-        let along = t - self.nearest;
-        let squared = self.distance * self.distance + along * along;
-        let angle = self.angle * std::f32::consts::TAU;
-        if t <= self.end { self.distance / (angle * squared) } else { 0.0 }
+    fn pdf(&self, w: usize, t: f32) -> f32 {
+        let along = t - self.nearest[w];
+        let squared = self.distance[w] * self.distance[w] + along * along;
+        let angle = self.angle[w] * std::f32::consts::TAU;
+        if t <= self.end[w] { self.distance[w] / (angle * squared) } else { 0.0 }
     }
 }
 
@@ -162,17 +197,17 @@ mod tests {
 
     /// Mean of f/p over drawn distances, and its standard error; p is the density with its equiangular part multiplied by
     /// `factor`.
-    fn integral(distances: &Distances, f: impl Fn(f32) -> f32, factor: f32, samples: u32) -> [f64; 2] {
+    fn integral(distances: &Distances<1>, f: impl Fn(f32) -> f32, factor: f32, samples: u32) -> [f64; 2] {
         let mut random = Random::new(3, 0, 0);
         let (mut sum, mut squares) = (0.0, 0.0);
         for _ in 0..samples {
-            let t: [f32; 4] = distances.draw(random.f32x2());
-            let pdf = distances.pdfs(&t, &t.map(|t| tyndall_lanes::exp(-distances.mu_t * t)));
+            let t: [[f32; 1]; 4] = distances.draw(&random.f32x2().map(|u| [u]));
+            let pdf = distances.pdfs(&t, &t.map(|[t]| [tyndall_lanes::exp(-distances.mu_t * t)]));
             let mut mean = 0.0;
             for k in 0..4 {
-                let part = distances.equiangular.as_ref().map_or(0.0, |part| part.pdf(t[k]));
-                let pdf = pdf[k] + (factor - 1.0) * distances.share * part;
-                mean += 0.25 * f64::from(f(t[k]) / pdf);
+                let part = distances.equiangular.pdf(0, t[k][0]);
+                let pdf = pdf[k][0] + (factor - 1.0) * distances.share[0] * part;
+                mean += 0.25 * f64::from(f(t[k][0]) / pdf);
             }
             sum += mean;
             squares += mean * mean;
@@ -200,7 +235,8 @@ mod tests {
                 center: ray.origin + DVec3::new(along, 0.0, beside),
                 softening,
             });
-            let distances = Distances::new(at.as_ref(), &stretch);
+            let mut distances = Distances::new(mu_t);
+            distances.set(0, at.as_ref(), &stretch);
             let (along, beside, _) = place.unwrap_or((0.7, 0.8, 0.0));
             let f = |t: f32| {
                 let squared = (beside * beside) as f32 + (t - along as f32).powi(2);

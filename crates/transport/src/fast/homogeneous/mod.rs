@@ -11,32 +11,31 @@
 //! or the surface; from the camera's ray it goes on in several branches. Half of the directions aim at the light around lamps
 //! ([`aim`]). The reference integrator leaves all of this to chance, and has the same mean.
 //!
-//! There is nothing to march through, and thus no pool: one path after the other, each from its start to its end.
+//! There is nothing to march through. Still a thread follows some tens of paths side by side ([`rounds`]).
 
 mod aim;
 mod distances;
 mod lit_way;
 mod points;
+mod rounds;
 mod stretch;
 
 use glam::{DVec3, Vec3};
-use std::sync::atomic::AtomicBool;
-use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 use tyndall_optics::PhaseFunction;
+use tyndall_scene::light::AreaLight;
 use tyndall_scene::surface::Meeting;
 use tyndall_scene::{Channels, Density, Hit, Light, LightSample, Ray, Scene};
 
-use self::lit_way::Lamps;
+use self::lit_way::{Lamps, Unshadowed};
+pub(super) use self::rounds::Paths;
 use self::stretch::{Fog, Stretch};
 use crate::first_draws::FirstDraws;
 use crate::found_light::{self, Turned};
 use crate::path_layers::{FirstMet, PathLayers};
-use crate::render::{RenderOptions, trace_tiles};
 use crate::roulette::survival;
 use crate::surface_vertex::{SurfaceTurn, SurfaceVertex};
 use crate::way::is_plain;
-use crate::wide;
 
 /// Throughput of a branch, relative to its beginning, below which roulette is played; survivors get twice this.
 const ROULETTE_THROUGHPUT: f64 = 0.25;
@@ -92,109 +91,65 @@ impl<'a> Homogeneous<'a> {
     }
 }
 
-/// All samples of some tiles.
-pub(super) struct Paths<'a> {
-    pub homogeneous: &'a Homogeneous<'a>,
-    pub tiles: &'a mut [FilmTile],
-    pub options: &'a RenderOptions,
-    pub cancel: &'a AtomicBool,
-}
-
-impl wide::Task for Paths<'_> {
-    #[inline(always)]
-    fn run(self) -> bool {
-        let Paths { homogeneous, tiles, options, cancel } = self;
-        let trace = |ray, draws, random: &mut Random| homogeneous.trace(ray, draws, random);
-        trace_tiles(homogeneous.scene, tiles, options, cancel, trace)
-    }
-}
-
 impl Homogeneous<'_> {
-    /// One estimate of the radiance that arrives along `ray`.
+    /// Follows the path's ray to what it meets, and adds the light that shines there.
     #[inline(always)]
-    fn trace(&self, ray: Ray, draws: FirstDraws, random: &mut Random) -> Sample {
-        let mut layers = PathLayers::<Vec3>::default();
-        let path = Path {
-            ray,
-            u: draws.collision(random),
-            throughput: Vec3::ONE,
-            refraction: 1.0,
-            turn: Turn::None,
-            turns: 0,
-            scatterings: 0,
-        };
-        if let Some(first) = self.follow(path, draws, &mut layers, random) {
-            let later = FirstDraws::Independent;
-            for branch in 0..BRANCHES {
-                let mut next = self.turn(&first, branch, draws.of_branch(branch, BRANCHES), random);
-                while let Some(path) = next {
-                    let end = self.follow(path, later, &mut layers, random);
-                    next = end.and_then(|end| self.turn(&end, 0, later, random));
-                }
-            }
-        }
-        layers.into_sample(|colour| colour.as_dvec3())
-    }
-
-    /// Follows the path's ray to its end and adds the light that it passes; where it ends, if it may go on from there.
-    #[inline(always)]
-    fn follow(
-        &self,
-        path: Path,
-        draws: FirstDraws,
-        layers: &mut PathLayers<Vec3>,
-        random: &mut Random,
-    ) -> Option<End> {
+    fn reach(&self, path: &Path, met: Option<&Meeting>, way: &mut Way, layers: &mut PathLayers<Vec3>) {
         let scene = self.scene;
         let is_first = path.turns == 0;
-        let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
-        let end = met.as_ref().map_or(f64::INFINITY, Meeting::distance);
-        let stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
-        let through = path.throughput * stretch.through;
-        // What the path passes by in the end need not be known, but if it shines.
-        let collision = stretch.collision(path.u);
-        let matters = |met: &Meeting| {
-            is_first || collision.is_none() || scene.surfaces.shapes[met.shape()].light.is_some()
-        };
-        let hit = met.as_ref().filter(|met| matters(met)).map(|met| scene.surfaces.hit(&path.ray, met));
-        match &hit {
-            Some(hit) => layers.add(path.scatterings, through * self.lamp(hit, &path)),
-            None if met.is_none() => layers.add(path.scatterings, through * self.surroundings(&path)),
-            None => {}
+        let end = met.map_or(f64::INFINITY, Meeting::distance);
+        way.stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
+        let collision = way.stretch.collision(path.u);
+        way.hit = None;
+        way.arrives = is_first || collision.is_none();
+        let through = path.throughput * way.stretch.through;
+        match met {
+            // What the path passes by in the end need not be known, but if it shines.
+            Some(met) if way.arrives || scene.surfaces.shapes[met.shape()].light.is_some() => {
+                let hit = way.hit.insert(scene.surfaces.hit(&path.ray, met));
+                if let Some((number, lamp)) = scene.lamp(hit) {
+                    layers.add(path.scatterings, through * self.lamp(number, lamp, hit, path));
+                }
+            }
+            Some(_) => {}
+            None => layers.add(path.scatterings, through * self.surroundings(path)),
         }
         if is_first {
-            let collision = collision.map(|t| stretch.start + f64::from(t));
-            layers.first = self.first_met(collision, hit.as_ref(), &path.ray);
+            let collision = collision.map(|t| way.stretch.start + f64::from(t));
+            layers.first = self.first_met(collision, way.hit.as_ref(), &path.ray);
         }
-        if scene.max_depth.is_some_and(|depth| path.turns >= depth) {
-            return None;
-        }
-        if let Some(fog) = &self.fog {
-            let u = draws.lit_way(random);
-            let lit = if is_first {
-                self.lamps.in_scattered::<FIRST>(scene, fog, &stretch, u, random)
-            } else {
-                self.lamps.in_scattered::<LATER>(scene, fog, &stretch, u, random)
-            };
-            layers.add(path.scatterings + 1, path.throughput * lit);
-        }
-        let vertex = hit
-            .filter(|_| is_first || collision.is_none())
-            .map(|hit| SurfaceVertex::new(scene, &hit, path.ray.direction, &Channels::Rgb));
-        if let Some(vertex) = &vertex {
-            // Towards the camera with the weight of what gets through, later as often as the path does.
-            let weight = if is_first { through } else { path.throughput };
-            layers.add(path.scatterings, weight * self.reflected(vertex, draws, random));
-        }
-        Some(End { path, stretch, vertex })
     }
 
-    /// How the path goes on, of the camera's the branch of this number: from a collision, drawn with density μt T, or the surface;
-    /// `None` if it ends there.
+    /// Turns the surface at the end of the path's way, if it comes to one, to light: what it reflects unless something stands in its way.
     #[inline(always)]
-    fn turn(&self, end: &End, branch: u32, draws: FirstDraws, random: &mut Random) -> Option<Path> {
-        let End { path, stretch, vertex } = end;
-        let mut path = *path;
+    fn arrive(
+        &self,
+        path: &Path,
+        way: &mut Way,
+        draws: FirstDraws,
+        random: &mut Random,
+    ) -> Option<Unshadowed> {
+        let Way { stretch, hit, vertex, .. } = way;
+        *vertex = None;
+        let hit = hit.as_ref().filter(|_| way.arrives)?;
+        let vertex = vertex.insert(SurfaceVertex::new(self.scene, hit, path.ray.direction, &Channels::Rgb));
+        // Towards the camera with the weight of what gets through, later as often as the path does.
+        let weight = if path.turns == 0 { path.throughput * stretch.through } else { path.throughput };
+        let reflected = self.reflected(vertex, draws, random)?;
+        Some(Unshadowed { light: weight * reflected.light, ..reflected })
+    }
+
+    /// Turns a path whose ray ended there, the camera's for the branch of this number: at a collision, drawn with density μt T, or at the
+    /// surface; `false` if it ends there.
+    #[inline(always)]
+    fn turn(
+        &self,
+        path: &mut Path,
+        (stretch, vertex): (&Stretch, Option<&SurfaceVertex>),
+        branch: u32,
+        draws: FirstDraws,
+        random: &mut Random,
+    ) -> bool {
         if path.turns == 0 {
             path.throughput /= BRANCHES as f32;
             path.u = (path.u + branch as f32) / BRANCHES as f32;
@@ -207,14 +162,16 @@ impl Homogeneous<'_> {
             (Some(t), Some(fog), _) => {
                 path.throughput *= fog.albedo;
                 if !path.survives_roulette(random) {
-                    return None;
+                    return false;
                 }
                 path.scatterings += 1;
                 let before = path.ray.direction.as_vec3();
                 let position = stretch.ray.at(f64::from(t));
                 let aim = self.lamps.targets.from(position, stretch.mu_t);
-                let onward = aim.sample(choice, [v, w]);
-                let onward = onward.unwrap_or_else(|| fog.phase.sample(before, [v, w]));
+                let onward = match aim.sample(choice, [v, w]) {
+                    Some(onward) => onward,
+                    None => fog.phase.sample(before, [v, w]),
+                };
                 let value = fog.phase.value(before, onward);
                 path.throughput *= value / aim.pdf(onward, value);
                 let pdf = f64::from(value);
@@ -223,11 +180,11 @@ impl Homogeneous<'_> {
                 path.ray = Ray { origin: position, direction: onward.as_dvec3().normalize() };
             }
             (_, _, Some(vertex)) => {
-                let onward = self.leave(vertex, [choice, v, w])?;
+                let Some(onward) = self.leave(vertex, [choice, v, w]) else { return false };
                 path.throughput *= onward.weight.truncate().as_vec3();
                 path.refraction *= onward.radiance_scale;
                 if !path.survives_roulette(random) {
-                    return None;
+                    return false;
                 }
                 path.turn = match onward.pdf {
                     Some(pdf) => Turn::Surface { from: vertex.position(), pdf },
@@ -235,9 +192,9 @@ impl Homogeneous<'_> {
                 };
                 path.ray = vertex.depart(onward.direction);
             }
-            _ => return None,
+            _ => return false,
         }
-        Some(path)
+        true
     }
 
     /// How the path goes on from a surface.
@@ -258,16 +215,20 @@ impl Homogeneous<'_> {
         (pdf > 0.0).then_some(SurfaceTurn { direction, weight, pdf: Some(pdf), radiance_scale: 1.0 })
     }
 
-    /// Light of one lamp that the surface reflects towards the path, after its way through the medium.
+    /// Light of one lamp that the surface reflects towards the path, after its way through the medium, unless something stands in
+    /// that.
     #[inline(always)]
-    fn reflected(&self, vertex: &SurfaceVertex, draws: FirstDraws, random: &mut Random) -> Vec3 {
+    fn reflected(
+        &self,
+        vertex: &SurfaceVertex,
+        draws: FirstDraws,
+        random: &mut Random,
+    ) -> Option<Unshadowed> {
         if vertex.is_delta() {
-            return Vec3::ZERO;
+            return None;
         }
         let from = vertex.position();
-        let Some((number, probability)) = self.scene.choose_light(from, draws.light(random)) else {
-            return Vec3::ZERO;
-        };
+        let (number, probability) = self.scene.choose_light(from, draws.light(random))?;
         let u = draws.light_place(random);
         let sample = points::sample(&self.scene.lights[number], from, u);
         let LightSample { toward, distance, .. } = sample;
@@ -275,19 +236,16 @@ impl Homogeneous<'_> {
         let weight = if sample.is_delta { 1.0 } else { light_pdf / (light_pdf + vertex.pdf(toward)) };
         let unshadowed = vertex.value(toward).truncate() * sample.radiance_over_pdf * (weight / probability);
         if unshadowed == DVec3::ZERO {
-            return Vec3::ZERO;
+            return None;
         }
         let ray = vertex.depart(toward);
-        if self.scene.surfaces.stand_in(&ray, distance) {
-            return Vec3::ZERO;
-        }
-        unshadowed.as_vec3() * self.fog.as_ref().map_or(1.0, |fog| fog.transmittance(&ray, distance))
+        let through = self.fog.as_ref().map_or(1.0, |fog| fog.transmittance(&ray, distance));
+        Some(Unshadowed { light: unshadowed.as_vec3() * through, ray, distance })
     }
 
-    /// Radiance of the lamp, if it is one, that the path meets, with its weight.
-    #[inline(always)]
-    fn lamp(&self, hit: &Hit, path: &Path) -> Vec3 {
-        let Some((number, lamp)) = self.scene.lamp(hit) else { return Vec3::ZERO };
+    /// Radiance of the lamp that the path meets, with its weight.
+    #[inline(never)]
+    fn lamp(&self, number: usize, lamp: &AreaLight, hit: &Hit, path: &Path) -> Vec3 {
         let direction = path.ray.direction;
         let light_pdf = |from| points::lamp_pdf(lamp, from, direction, hit);
         let weight = match &path.turn {
@@ -331,11 +289,16 @@ impl Homogeneous<'_> {
     }
 }
 
-/// The end of a path's ray.
-struct End {
-    path: Path,
+/// Where a path's ray leads.
+#[derive(Clone)]
+struct Way {
+    /// Through the medium.
     stretch: Stretch,
-    /// The surface there, if the path may come to it.
+    /// What it meets, as far as it matters.
+    hit: Option<Hit>,
+    /// Whether the path may come there.
+    arrives: bool,
+    /// The place there, if it is a surface and the path may come to it.
     vertex: Option<SurfaceVertex>,
 }
 
@@ -365,6 +328,13 @@ enum Turn {
 }
 
 impl Path {
+    /// The camera's, which collides by `u`.
+    #[inline(always)]
+    fn from_camera(ray: Ray, u: f32) -> Self {
+        let (throughput, refraction) = (Vec3::ONE, 1.0);
+        Self { ray, u, throughput, refraction, turn: Turn::None, turns: 0, scatterings: 0 }
+    }
+
     /// What found light is weighted by, but after a collision.
     #[inline(always)]
     fn turned(&self) -> Turned {

@@ -1,4 +1,4 @@
-//! Points of a light as they are seen from places along a ray, side by side.
+//! Points of lights as they are seen from places along rays, side by side: `N` places on each of `W` ways.
 //!
 //! In f32 and from the ray's origin, which is enough for what they bring; the shadow ray to the one that is chosen is made in
 //! f64.
@@ -9,19 +9,27 @@ use tyndall_scene::{Hit, Light, LightSample, Ray};
 
 use super::stretch::Fog;
 
-/// Points of one light.
-pub(super) struct Points<const N: usize> {
+/// Points of one light on each way.
+pub(super) struct Points<const W: usize, const N: usize> {
     /// Unit vectors to them, by component.
-    pub toward: [[f32; N]; 3],
-    pub distance: [f32; N],
+    pub toward: [[[f32; W]; N]; 3],
+    pub distance: [[f32; W]; N],
     /// Densities over solid angle; 0 if the light is a point.
-    pub pdf: [f32; N],
+    pub pdf: [[f32; W]; N],
     /// Radiance over density, or irradiance, of the brightest channel.
-    pub arriving: [f32; N],
-    /// The light's colour: its brightest channel is 1.
-    pub colour: Vec3,
+    pub arriving: [[f32; W]; N],
+    /// The lights' colours: the brightest channel is 1.
+    pub colour: [Vec3; W],
     /// The points themselves; nothing at infinity.
-    places: Option<[DVec3; N]>,
+    places: [Option<[DVec3; N]>; W],
+    /// Of lamps, the normals there.
+    normal: [[[f32; W]; N]; 3],
+    /// Area of a lamp; 0 of other lights.
+    area: [f32; W],
+    /// Whether only one side shines, as 0, or both, as 1.
+    backwards: [f32; W],
+    /// Radiance or intensity of the brightest channel.
+    strength: [f32; W],
 }
 
 /// How much nearer than the point a shadow ray ends, relative to the coordinates: roundings must not let a lamp shadow
@@ -58,123 +66,164 @@ pub(super) fn sample(light: &Light, from: DVec3, u: [f64; 2]) -> LightSample {
     light.sample(from, u)
 }
 
-impl<const N: usize> Points<N> {
-    /// Points of a lamp, uniform by area.
+impl<const W: usize, const N: usize> Points<W, N> {
+    /// None on any way yet.
     #[inline(always)]
-    pub fn of_lamp(lamp: &AreaLight, ray: &Ray, t: &[f32; N], u: [f32; 2]) -> Self {
-        let mut places = [DVec3::ZERO; N];
-        let mut normal = [[0.0; N]; 3];
-        for k in 0..N {
-            if let Some(point) = lamp.point(spread(u, k)) {
-                places[k] = point.position;
-                let n = point.normal.as_vec3();
-                (normal[0][k], normal[1][k], normal[2][k]) = (n.x, n.y, n.z);
+    pub fn new() -> Self {
+        let zero = [[0.0; W]; N];
+        Self {
+            toward: [zero; 3],
+            distance: zero,
+            pdf: zero,
+            arriving: zero,
+            colour: [Vec3::ZERO; W],
+            places: [None; W],
+            normal: [zero; 3],
+            area: [0.0; W],
+            backwards: [0.0; W],
+            strength: [0.0; W],
+        }
+    }
+
+    /// Looks for this light on way `w`.
+    #[inline(always)]
+    pub fn set(&mut self, w: usize, light: &Light, u: [f32; 2]) {
+        let (mut places, mut brightness) = ([DVec3::ZERO; N], DVec3::ZERO);
+        match light {
+            Light::Area(lamp) => {
+                for (k, place) in places.iter_mut().enumerate() {
+                    if let Some(point) = lamp.point(spread(u, k)) {
+                        *place = point.position;
+                        for axis in 0..3 {
+                            self.normal[axis][k][w] = point.normal[axis] as f32;
+                        }
+                    }
+                }
+                brightness = lamp.radiance();
+                self.area[w] = lamp.area() as f32;
+                self.backwards[w] = if lamp.is_two_sided() { 1.0 } else { 0.0 };
+            }
+            Light::Point(point) => {
+                places = [point.position(); N];
+                brightness = point.intensity();
+            }
+            Light::Spot(spot) => {
+                places = [spot.position(); N];
+                brightness = spot.intensity(spot.axis());
+            }
+            _ => {}
+        }
+        self.places[w] = Some(places);
+        (self.strength[w], self.colour[w]) = strength_and_colour(brightness);
+    }
+
+    /// Sees them from the places at the distances `t` of rays.
+    #[inline(always)]
+    pub fn see(&mut self, rays: &[Ray; W], direction: &[[f32; W]; 3], t: &[[f32; W]; N]) {
+        let mut offset = [[[0.0; W]; N]; 3];
+        for (w, places) in self.places.iter().enumerate() {
+            for (k, place) in places.iter().flatten().enumerate() {
+                let from_origin = *place - rays[w].origin;
+                for axis in 0..3 {
+                    offset[axis][k][w] = from_origin[axis] as f32;
+                }
             }
         }
-        let (strength, colour) = strength_and_colour(lamp.radiance());
-        let area = lamp.area() as f32;
-        let backwards = if lamp.is_two_sided() { 1.0 } else { 0.0 };
-        let mut points = Self::at(places, colour, ray, t);
         for k in 0..N {
-            let [x, y, z] = &points.toward;
-            let cos = -(x[k] * normal[0][k] + y[k] * normal[1][k] + z[k] * normal[2][k]);
-            let shines = if cos > 0.0 { 1.0 } else { backwards };
-            let pdf = points.distance[k] * points.distance[k] / (cos.abs() * area);
-            points.pdf[k] = pdf;
-            points.arriving[k] = strength * shines / pdf;
-        }
-        for (k, &t) in t.iter().enumerate() {
-            let from = ray.at(f64::from(t));
-            if is_near(lamp, from) {
-                points.draw_from(k, from, &lamp.sample(from, spread(u, k)));
+            for w in 0..W {
+                let x = offset[0][k][w] - direction[0][w] * t[k][w];
+                let y = offset[1][k][w] - direction[1][w] * t[k][w];
+                let z = offset[2][k][w] - direction[2][w] * t[k][w];
+                let length = (x * x + y * y + z * z).sqrt();
+                let inverse = 1.0 / length;
+                let (x, y, z) = (x * inverse, y * inverse, z * inverse);
+                let [nx, ny, nz] = [&self.normal[0][k], &self.normal[1][k], &self.normal[2][k]];
+                let cos = -(x * nx[w] + y * ny[w] + z * nz[w]);
+                let shines = if cos > 0.0 { 1.0 } else { self.backwards[w] };
+                let squared = length * length;
+                let by_area = squared / (cos.abs() * self.area[w]);
+                let is_point = self.area[w] == 0.0;
+                let over = if is_point { squared } else { by_area };
+                let strength = if is_point { self.strength[w] } else { self.strength[w] * shines };
+                self.pdf[k][w] = if is_point { 0.0 } else { by_area };
+                self.arriving[k][w] = strength / over;
+                self.distance[k][w] = length;
+                (self.toward[0][k][w], self.toward[1][k][w], self.toward[2][k][w]) = (x, y, z);
             }
         }
-        points
+    }
+
+    /// What is otherwise on way `w`, along `ray`, than [`see`](Self::see) takes it to be: a lamp that is near, a spot light's cone, a light at infinity.
+    #[inline(always)]
+    pub fn mend(&mut self, w: usize, light: &Light, ray: &Ray, t: &[[f32; W]; N], u: [f32; 2]) {
+        match light {
+            Light::Area(lamp) => {
+                for (k, t) in t.iter().enumerate() {
+                    let from = ray.at(f64::from(t[w]));
+                    if is_near(lamp, from) {
+                        self.draw_from(w, k, from, &lamp.sample(from, spread(u, k)));
+                    }
+                }
+            }
+            Light::Point(_) => {}
+            Light::Spot(spot) => self.cone(w, spot),
+            _ => self.at_infinity(w, &light.sample(ray.origin, u.map(f64::from))),
+        }
     }
 
     /// Takes a sample for the point `k`, as it is seen from `from`.
     #[inline(never)]
-    fn draw_from(&mut self, k: usize, from: DVec3, sample: &LightSample) {
-        let toward = sample.toward.as_vec3();
-        (self.toward[0][k], self.toward[1][k], self.toward[2][k]) = (toward.x, toward.y, toward.z);
-        self.distance[k] = sample.distance as f32;
-        self.pdf[k] = sample.pdf as f32;
-        self.arriving[k] = sample.radiance_over_pdf.max_element() as f32;
-        if let Some(places) = &mut self.places {
+    fn draw_from(&mut self, w: usize, k: usize, from: DVec3, sample: &LightSample) {
+        for axis in 0..3 {
+            self.toward[axis][k][w] = sample.toward[axis] as f32;
+        }
+        self.distance[k][w] = sample.distance as f32;
+        self.pdf[k][w] = sample.pdf as f32;
+        self.arriving[k][w] = sample.radiance_over_pdf.max_element() as f32;
+        if let Some(places) = &mut self.places[w] {
             places[k] = from + sample.toward * sample.distance;
         }
     }
 
-    /// A light that is a point.
-    #[inline(always)]
-    pub fn of_point(place: DVec3, intensity: DVec3, ray: &Ray, t: &[f32; N]) -> Self {
-        let (strength, colour) = strength_and_colour(intensity);
-        let mut points = Self::at([place; N], colour, ray, t);
+    #[inline(never)]
+    fn cone(&mut self, w: usize, spot: &SpotLight) {
         for k in 0..N {
-            points.arriving[k] = strength / (points.distance[k] * points.distance[k]);
-        }
-        points
-    }
-
-    /// A spot light.
-    pub fn of_spot(spot: &SpotLight, ray: &Ray, t: &[f32; N]) -> Self {
-        let (_, colour) = strength_and_colour(spot.intensity(spot.axis()));
-        let mut points = Self::at([spot.position(); N], colour, ray, t);
-        for k in 0..N {
-            let toward = DVec3::from_array(std::array::from_fn(|axis| f64::from(points.toward[axis][k])));
-            let intensity = spot.intensity(-toward).max_element() as f32;
-            points.arriving[k] = intensity / (points.distance[k] * points.distance[k]);
-        }
-        points
-    }
-
-    /// A direction to a light at infinity.
-    pub fn at_infinity(sample: &LightSample) -> Self {
-        let (strength, colour) = strength_and_colour(sample.radiance_over_pdf);
-        let toward = sample.toward.as_vec3();
-        Self {
-            toward: [[toward.x; N], [toward.y; N], [toward.z; N]],
-            distance: [f32::INFINITY; N],
-            pdf: [if sample.is_delta { 0.0 } else { sample.pdf as f32 }; N],
-            arriving: [strength; N],
-            colour,
-            places: None,
+            let intensity = spot.intensity(-self.toward(w, k).as_dvec3()).max_element() as f32;
+            self.arriving[k][w] = intensity / (self.distance[k][w] * self.distance[k][w]);
         }
     }
 
-    #[inline(always)]
-    fn at(places: [DVec3; N], colour: Vec3, ray: &Ray, t: &[f32; N]) -> Self {
-        let direction = ray.direction.as_vec3();
-        let (mut toward, mut distance) = ([[0.0; N]; 3], [0.0; N]);
+    #[inline(never)]
+    fn at_infinity(&mut self, w: usize, sample: &LightSample) {
+        let strength;
+        (strength, self.colour[w]) = strength_and_colour(sample.radiance_over_pdf);
         for k in 0..N {
-            let offset = (places[k] - ray.origin).as_vec3();
-            (toward[0][k], toward[1][k], toward[2][k]) = (offset.x, offset.y, offset.z);
+            for axis in 0..3 {
+                self.toward[axis][k][w] = sample.toward[axis] as f32;
+            }
+            self.distance[k][w] = f32::INFINITY;
+            self.pdf[k][w] = if sample.is_delta { 0.0 } else { sample.pdf as f32 };
+            self.arriving[k][w] = strength;
         }
-        for k in 0..N {
-            let x = toward[0][k] - direction.x * t[k];
-            let y = toward[1][k] - direction.y * t[k];
-            let z = toward[2][k] - direction.z * t[k];
-            let length = (x * x + y * y + z * z).sqrt();
-            let inverse = 1.0 / length;
-            (toward[0][k], toward[1][k], toward[2][k]) = (x * inverse, y * inverse, z * inverse);
-            distance[k] = length;
-        }
-        Self { toward, distance, pdf: [0.0; N], arriving: [0.0; N], colour, places: Some(places) }
+        self.places[w] = None;
     }
 
-    /// What of the light gets through the fog to the places at the distances `t` of `ray`.
-    pub fn transmittances(&self, fog: &Fog, ray: &Ray, t: &[f32; N]) -> [f32; N] {
-        std::array::from_fn(|k| {
-            let origin = ray.at(f64::from(t[k]));
-            let (direction, distance) = self.seen_from(k, origin);
-            fog.transmittance(&Ray { origin, direction }, distance)
-        })
+    fn toward(&self, w: usize, k: usize) -> Vec3 {
+        Vec3::new(self.toward[0][k][w], self.toward[1][k][w], self.toward[2][k][w])
+    }
+
+    /// What of the light gets through the fog to the place at the distance `t` of `ray`, where the fog may end in between.
+    #[inline(never)]
+    pub fn transmittance(&self, fog: &Fog, ray: &Ray, t: f32, [w, k]: [usize; 2]) -> f32 {
+        let origin = ray.at(f64::from(t));
+        let (direction, distance) = self.seen_from([w, k], origin);
+        fog.transmittance(&Ray { origin, direction }, distance)
     }
 
     /// Direction and distance of a point, up to just before it.
     #[inline(always)]
-    pub fn seen_from(&self, k: usize, from: DVec3) -> (DVec3, f64) {
-        match &self.places {
+    pub fn seen_from(&self, [w, k]: [usize; 2], from: DVec3) -> (DVec3, f64) {
+        match &self.places[w] {
             Some(places) => {
                 let offset = places[k] - from;
                 let distance = offset.length();
@@ -182,11 +231,7 @@ impl<const N: usize> Points<N> {
                 let toward = offset / distance;
                 (toward, (distance - SHORT * (distance + 0.1 * coordinates)).max(0.0))
             }
-            None => {
-                let [x, y, z] = &self.toward;
-                let toward = Vec3::new(x[k], y[k], z[k]).as_dvec3();
-                (toward.normalize(), f64::INFINITY)
-            }
+            None => (self.toward(w, k).as_dvec3().normalize(), f64::INFINITY),
         }
     }
 }

@@ -52,12 +52,31 @@ impl<'a> Fog<'a> {
         })
     }
 
+    /// The distances between which `ray` is in the medium before the distance `end`.
+    #[inline(always)]
+    fn interval(&self, ray: &Ray, end: f64) -> Option<(f64, f64)> {
+        // The medium is convex: between two places in it a ray does not leave it.
+        if let Density::Box { min, max } = &self.volume.density {
+            let to_local = &self.volume.world_to_local;
+            let (from, to) = (to_local.transform_point3(ray.origin), to_local.transform_point3(ray.at(end)));
+            let [least, greatest] = [from.min(to), from.max(to)];
+            let is_inside = least.x > min.x
+                && least.y > min.y
+                && least.z > min.z
+                && greatest.x < max.x
+                && greatest.y < max.y
+                && greatest.z < max.z;
+            if is_inside && end > 0.0 {
+                return Some((0.0, end));
+            }
+        }
+        self.volume.interval(&self.volume.local_ray(ray), (0.0, end))
+    }
+
     /// Transmittance of `ray` up to the distance `end`.
     #[inline(always)]
     pub fn transmittance(&self, ray: &Ray, end: f64) -> f32 {
-        let local = self.volume.local_ray(ray);
-        let interval = self.volume.interval(&local, (0.0, end));
-        interval.map_or(1.0, |(start, end)| beer(self.mu_t, (end - start) as f32))
+        self.interval(ray, end).map_or(1.0, |(start, end)| beer(self.mu_t, (end - start) as f32))
     }
 }
 
@@ -67,8 +86,7 @@ impl Stretch {
     pub fn new(fog: Option<&Fog>, ray: &Ray, end: f64) -> Self {
         let empty = Self { ray: *ray, start: 0.0, length: 0.0, mu_t: 0.0, through: 1.0 };
         let Some(fog) = fog else { return empty };
-        let local = fog.volume.local_ray(ray);
-        let Some((start, end)) = fog.volume.interval(&local, (0.0, end)) else { return empty };
+        let Some((start, end)) = fog.interval(ray, end) else { return empty };
         let (length, mu_t) = ((end - start) as f32, fog.mu_t);
         let ray = Ray { origin: ray.at(start), direction: ray.direction };
         Self { ray, start, length, mu_t, through: beer(mu_t, length) }
@@ -83,16 +101,18 @@ impl Stretch {
         let t = -tyndall_lanes::ln(u) / self.mu_t;
         (t < self.length).then_some(t)
     }
+}
 
-    /// T at each distance.
-    #[inline(always)]
-    pub fn transmittances<const N: usize>(&self, t: &[f32; N]) -> [f32; N] {
-        let mut transmittance = [0.0; N];
-        for k in 0..N {
-            transmittance[k] = beer(self.mu_t, t[k]);
+/// T = exp(−μt t) at each distance.
+#[inline(always)]
+pub(super) fn transmittances<const W: usize, const N: usize>(mu_t: f32, t: &[[f32; W]; N]) -> [[f32; W]; N] {
+    let mut transmittance = [[0.0; W]; N];
+    for k in 0..N {
+        for w in 0..W {
+            transmittance[k][w] = beer(mu_t, t[k][w]);
         }
-        transmittance
     }
+    transmittance
 }
 
 /// exp(−μt t)

@@ -1,0 +1,247 @@
+//! Paths side by side: in each round all of a thread's paths turn, then all follow their rays, then all look for light on
+//! them, and so on.
+//!
+//! A path runs through more code from one turn to the next than a core's first cache of instructions holds; so each part of it is done for
+//! [`TOGETHER`] paths before the next. Where arithmetic is most of a part, it is that of many paths at once: which surfaces rays
+//! meet, and what light there is on their way. The paths do not touch each other, so that it does not matter which are together.
+
+use glam::{DVec3, Vec3};
+use std::sync::atomic::{AtomicBool, Ordering};
+use tyndall_film::FilmTile;
+use tyndall_lanes::Random;
+use tyndall_scene::Ray;
+use tyndall_scene::surface::{LANES, RayGroup, Surfaces};
+
+use super::lit_way::{LitWays, Unshadowed};
+use super::stretch::Stretch;
+use super::{BRANCHES, FIRST, Homogeneous, LATER, Path, Way};
+use crate::fast::{Pixel, Work};
+use crate::first_draws::FirstDraws;
+use crate::path_layers::PathLayers;
+use crate::render::RenderOptions;
+use crate::wide;
+
+/// Paths in flight on a thread.
+const TOGETHER: usize = 32;
+
+/// Ways on which light is looked for side by side. Loops over less the compiler unrolls, and makes no vector code of them.
+const WAYS: usize = 16;
+
+/// All samples of some tiles.
+pub(in crate::fast) struct Paths<'a> {
+    pub homogeneous: &'a Homogeneous<'a>,
+    pub tiles: &'a mut [FilmTile],
+    pub options: &'a RenderOptions,
+    pub cancel: &'a AtomicBool,
+}
+
+/// A sample under way.
+struct Sampling {
+    pixel: Pixel,
+    random: Random,
+    draws: FirstDraws,
+    layers: PathLayers<Vec3>,
+    /// The camera's ray, and where it led.
+    first: (Path, Way),
+    /// Number of the next branch.
+    branch: u32,
+    /// That under way.
+    path: Path,
+    way: Way,
+}
+
+impl wide::Task for Paths<'_> {
+    #[inline(always)]
+    fn run(self) -> bool {
+        let Paths { homogeneous, tiles, options, cancel } = self;
+        let surfaces = &homogeneous.scene.surfaces;
+        let mut work = Work::default();
+        let mut samplings: Vec<Sampling> = Vec::with_capacity(TOGETHER);
+        while samplings.len() < TOGETHER
+            && let Some((pixel, sample)) = work.next(tiles)
+        {
+            samplings.push(Sampling::nothing());
+            if let Some(sampling) = samplings.last_mut() {
+                homogeneous.start(sampling, pixel, sample, options);
+            }
+        }
+        while !samplings.is_empty() {
+            if cancel.load(Ordering::Relaxed) {
+                return false;
+            }
+            for at in (0..samplings.len()).rev() {
+                let sampling = &mut samplings[at];
+                while !homogeneous.go_on(sampling) {
+                    let pixel = sampling.pixel;
+                    let layers = std::mem::take(&mut sampling.layers);
+                    let sample = layers.into_sample(|colour| colour.as_dvec3());
+                    tiles[pixel.tile as usize].add(pixel.x, pixel.y, &sample);
+                    let Some((pixel, sample)) = work.next(tiles) else {
+                        samplings.swap_remove(at);
+                        break;
+                    };
+                    homogeneous.start(sampling, pixel, sample, options);
+                }
+            }
+            let later = FirstDraws::Independent;
+            let max_depth = homogeneous.scene.max_depth.unwrap_or(u32::MAX);
+            let goes_on = |path: &Path| path.turns < max_depth;
+            for samplings in samplings.chunks_mut(LANES) {
+                let mut rays = RayGroup::default();
+                for (k, Sampling { path, .. }) in samplings.iter().enumerate() {
+                    rays.set(k, &path.ray, f64::INFINITY);
+                }
+                let met = surfaces.meet_all(&rays);
+                for (Sampling { path, way, layers, .. }, met) in samplings.iter_mut().zip(&met) {
+                    homogeneous.reach(path, met.as_ref(), way, layers);
+                }
+            }
+            let mut shadows = Shadows::default();
+            if let Some(fog) = &homogeneous.fog {
+                let lamps = (homogeneous.scene, &homogeneous.lamps);
+                for (number, samplings) in samplings.chunks_mut(WAYS).enumerate() {
+                    let mut ways = LitWays::<WAYS, LATER>::new(fog);
+                    for (w, Sampling { path, way, random, .. }) in samplings.iter_mut().enumerate() {
+                        if goes_on(path) {
+                            ways.ask(w, lamps, &way.stretch, later.lit_way(random), random);
+                        }
+                    }
+                    ways.look(lamps, fog);
+                    for (w, Sampling { path, random, .. }) in samplings.iter_mut().enumerate() {
+                        if let Some(lit) = ways.found(w, fog, random) {
+                            let light = path.throughput * lit.light;
+                            shadows.push(number * WAYS + w, path.scatterings + 1, light, &lit);
+                        }
+                    }
+                }
+            }
+            shadows.add(surfaces, &mut samplings);
+            let mut shadows = Shadows::default();
+            for (slot, Sampling { path, way, random, .. }) in samplings.iter_mut().enumerate() {
+                if goes_on(path)
+                    && let Some(reflected) = homogeneous.arrive(path, way, later, random)
+                {
+                    shadows.push(slot, path.scatterings, reflected.light, &reflected);
+                }
+            }
+            shadows.add(surfaces, &mut samplings);
+        }
+        true
+    }
+}
+
+/// Light that is added where nothing stands in its way.
+struct Shadows {
+    rays: [RayGroup; TOGETHER / LANES],
+    /// Of each ray the place of its sample, how often its light was scattered, and the light.
+    light: [(usize, u32, Vec3); TOGETHER],
+    count: usize,
+}
+
+impl Default for Shadows {
+    #[inline(always)]
+    fn default() -> Self {
+        let rays = [RayGroup::default(); TOGETHER / LANES];
+        Self { rays, light: [(0, 0, Vec3::ZERO); TOGETHER], count: 0 }
+    }
+}
+
+impl Shadows {
+    #[inline(always)]
+    fn push(&mut self, slot: usize, scatterings: u32, light: Vec3, unshadowed: &Unshadowed) {
+        self.light[self.count] = (slot, scatterings, light);
+        self.rays[self.count / LANES].set(self.count % LANES, &unshadowed.ray, unshadowed.distance);
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn add(&self, surfaces: &Surfaces, samplings: &mut [Sampling]) {
+        for (rays, light) in self.rays.iter().zip(self.light[..self.count].chunks(LANES)) {
+            let hidden = surfaces.stand_in_all(rays);
+            for ((slot, scatterings, light), hidden) in light.iter().zip(hidden) {
+                if !hidden {
+                    samplings[*slot].layers.add(*scatterings, *light);
+                }
+            }
+        }
+    }
+}
+
+impl Sampling {
+    /// One that has not begun.
+    fn nothing() -> Self {
+        let path = Path::from_camera(Ray { origin: DVec3::ZERO, direction: DVec3::Z }, 1.0);
+        let stretch = Stretch::new(None, &path.ray, 0.0);
+        let way = Way { stretch, hit: None, arrives: false, vertex: None };
+        Self {
+            pixel: Pixel::default(),
+            random: Random::default(),
+            draws: FirstDraws::Independent,
+            layers: PathLayers::default(),
+            first: (path, way.clone()),
+            branch: BRANCHES,
+            path,
+            way,
+        }
+    }
+}
+
+impl Homogeneous<'_> {
+    /// Begins a sample: from the camera to the end of its ray.
+    #[inline(always)]
+    fn start(&self, sampling: &mut Sampling, pixel: Pixel, sample: u64, options: &RenderOptions) {
+        let scene = self.scene;
+        let number = u64::from(pixel.y) * u64::from(scene.resolution[0]) + u64::from(pixel.x);
+        let mut random = Random::new(options.seed, number, sample);
+        let draws = FirstDraws::new(options.sampler, options.seed, number, sample);
+        let film_u = draws.film(&mut random);
+        let lens_u = draws.lens(&mut random);
+        let ray = scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
+        let path = Path::from_camera(ray, draws.collision(&mut random));
+        let Sampling { layers, first: (_, way), .. } = sampling;
+        let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
+        self.reach(&path, met.as_ref(), way, layers);
+        let mut branch = BRANCHES;
+        if scene.max_depth != Some(0) {
+            let is_seen = |light: &Unshadowed| !scene.surfaces.stand_in(&light.ray, light.distance);
+            if let Some(fog) = &self.fog {
+                let mut ways = LitWays::<1, FIRST>::new(fog);
+                ways.ask(0, (scene, &self.lamps), &way.stretch, draws.lit_way(&mut random), &mut random);
+                ways.look((scene, &self.lamps), fog);
+                if let Some(lit) = ways.found(0, fog, &mut random).filter(is_seen) {
+                    layers.add(path.scatterings + 1, path.throughput * lit.light);
+                }
+            }
+            if let Some(reflected) = self.arrive(&path, way, draws, &mut random).filter(is_seen) {
+                layers.add(path.scatterings, reflected.light);
+            }
+            branch = 0;
+        }
+        sampling.first.0 = path;
+        // No branch is under way: as if one had come to the greatest depth.
+        (sampling.path.turns, sampling.branch) = (u32::MAX, branch);
+        (sampling.pixel, sampling.random, sampling.draws) = (pixel, random, draws);
+    }
+
+    /// Turns the sample's path, or goes on with its next branch; `false` if there is none left.
+    #[inline(always)]
+    fn go_on(&self, sampling: &mut Sampling) -> bool {
+        let Sampling { random, draws, first, branch, path, way, .. } = sampling;
+        let max_depth = self.scene.max_depth.unwrap_or(u32::MAX);
+        if path.turns < max_depth
+            && self.turn(path, (&way.stretch, way.vertex.as_ref()), 0, FirstDraws::Independent, random)
+        {
+            return true;
+        }
+        let (first, end) = (&first.0, (&first.1.stretch, first.1.vertex.as_ref()));
+        while *branch < BRANCHES {
+            *path = *first;
+            let draws = draws.of_branch(*branch, BRANCHES);
+            *branch += 1;
+            if self.turn(path, end, *branch - 1, draws, random) {
+                return true;
+            }
+        }
+        false
+    }
+}
