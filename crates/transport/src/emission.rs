@@ -152,11 +152,15 @@ pub(crate) fn draw_glow(light: &VolumeLight, from: DVec3, u: [f64; 3]) -> Option
     })
 }
 
-/// The source term of `volume` at a place inside it, for light that travels towards −`toward`: μa·Le and what is given
-/// per length, radiance per length in red, green and blue.
-pub(crate) fn source_at(volume: &Volume, position: DVec3, toward: DVec3) -> DVec3 {
+/// μt of `volume` at a place inside it, for light that travels along `toward`.
+pub(crate) fn extinction_at(volume: &Volume, position: DVec3, toward: DVec3) -> f64 {
     let density = volume.density_at(volume.world_to_local.transform_point3(position));
-    let mu_t = volume.medium.mu_t_along(toward) * density;
+    volume.medium.mu_t_along(toward) * density
+}
+
+/// The source term of `volume` at a place inside it where its extinction is `mu_t`: μa·Le and what is given per length, radiance per
+/// length in red, green and blue.
+pub(crate) fn source_at(volume: &Volume, position: DVec3, mu_t: f64) -> DVec3 {
     let mut source = DVec3::ZERO;
     if mu_t > 0.0 {
         source += (DVec3::ONE - volume.albedo_at(position)) * volume.emission_at(position) * mu_t;
@@ -167,19 +171,17 @@ pub(crate) fn source_at(volume: &Volume, position: DVec3, toward: DVec3) -> DVec
     source
 }
 
-/// w_light of a point that next-event estimation has drawn: with `probability` this light of all, which is that of `volume`, where a path
-/// goes there with the density `path_pdf`.
-pub(crate) fn light_weight(volume: &Volume, glow: &Glow, probability: f64, path_pdf: f64) -> f64 {
-    let by_path = path_pdf * found(volume, glow.position, glow.toward, glow.distance);
+/// w_light of a point, where the extinction is `mu_t`, that next-event estimation has drawn: with `probability` this light of all,
+/// which is that of `volume`, where a path goes there with the density `path_pdf`.
+pub(crate) fn light_weight(volume: &Volume, glow: &Glow, mu_t: f64, probability: f64, path_pdf: f64) -> f64 {
+    let by_path = path_pdf * found(volume, mu_t, glow.distance);
     let by_light = probability * glow.density;
     if by_path + by_light > 0.0 { by_light / (by_path + by_light) } else { 0.0 }
 }
 
 /// κ, with which a path finds the light of `volume` at a place that it flies to, but for the transmittance.
-fn found(volume: &Volume, position: DVec3, toward: DVec3, distance: f64) -> f64 {
-    let density = volume.density_at(volume.world_to_local.transform_point3(position));
-    let on_the_way = if volume.medium.emission_per_length != DVec3::ZERO { distance.recip() } else { 0.0 };
-    volume.medium.mu_t_along(toward) * density + on_the_way
+fn found(volume: &Volume, mu_t: f64, distance: f64) -> f64 {
+    mu_t + if volume.medium.emission_per_length != DVec3::ZERO { distance.recip() } else { 0.0 }
 }
 
 /// w_path of a path that has turned at `from` with the density `path_pdf` towards `position`, where the volume glows; 1 if
@@ -193,7 +195,8 @@ pub(crate) fn path_weight(scene: &Scene, number: usize, from: DVec3, position: D
     if distance_squared == 0.0 {
         return 1.0;
     }
-    let by_path = path_pdf * found(volume, position, offset.normalize(), distance_squared.sqrt());
+    let mu_t = extinction_at(volume, position, offset.normalize());
+    let by_path = path_pdf * found(volume, mu_t, distance_squared.sqrt());
     let probability = scene.light_probability(light_number, from);
     let by_light = probability * light.pdf_volume(position) * distance_squared;
     if by_path + by_light > 0.0 { by_path / (by_path + by_light) } else { 1.0 }

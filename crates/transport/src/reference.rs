@@ -23,7 +23,9 @@ use tyndall_lanes::Random;
 use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
-use crate::emission::{Glow, draw_glow, light_weight, path_weight, source_at, weighted_emission_along};
+use crate::emission::{
+    Glow, draw_glow, extinction_at, light_weight, path_weight, source_at, weighted_emission_along,
+};
 use crate::equiangular_light::{Found, LitSegment};
 use crate::estimators::{Estimators, SceneFlight};
 use crate::found_light::{self, Turned};
@@ -364,8 +366,9 @@ impl Shadow<'_> {
         let Glow { position, toward, distance, density } = glow;
         let volume = &self.scene.volumes[light.volume()];
         let (value, path_pdf) = (vertex.value)(toward);
-        let weight = light_weight(volume, &glow, probability, path_pdf);
-        let source = source_at(volume, position, toward);
+        let mu_t = extinction_at(volume, position, toward);
+        let weight = light_weight(volume, &glow, mu_t, probability, path_pdf);
+        let source = source_at(volume, position, mu_t);
         let unshadowed = value * source * (weight / (density * probability));
         self.shadowed(vertex, unshadowed, toward, distance, random)
     }

@@ -9,7 +9,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use super::split::SidedFork;
-use crate::emission::{Glow, draw_glow, light_weight, source_at};
+use crate::emission::{Glow, draw_glow, extinction_at, light_weight, source_at};
 use crate::first_draws::FirstDraws;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, Way, is_plain};
@@ -166,8 +166,9 @@ pub(super) fn light_of(
         let Glow { position, toward, distance, density } = glow;
         let volume = &scene.volumes[light.volume()];
         let (value, path_pdf) = value(toward);
-        let weight = light_weight(volume, &glow, probability, path_pdf);
-        let source = source_at(volume, position, toward);
+        let mu_t = extinction_at(volume, position, toward);
+        let weight = light_weight(volume, &glow, mu_t, probability, path_pdf);
+        let source = source_at(volume, position, mu_t);
         let arriving = source * (weight / (density * probability));
         let unshadowed = (value * arriving).as_vec3();
         let arriving = arriving.as_vec3();

@@ -48,8 +48,8 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
 use crate::emission::{
-    Glow, draw_glow, emission_factor_along, emission_per_length_factor, emitting_stretch, light_weight,
-    path_weight,
+    Glow, draw_glow, emission_factor_along, emission_per_length_factor, emitting_stretch, extinction_at,
+    light_weight, path_weight,
 };
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::roulette::survival;
@@ -388,7 +388,9 @@ impl<'a> SpectralScene<'a> {
             return DVec4::ZERO;
         }
         let mean_pdf = mean(&self.channels, pdf);
-        let weight = light_weight(&self.scene.volumes[light.volume()], &glow, probability, mean_pdf);
+        let volume = &self.scene.volumes[light.volume()];
+        let mu_t = extinction_at(volume, position, toward);
+        let weight = light_weight(volume, &glow, mu_t, probability, mean_pdf);
         let Some(shadow) = self.shadow(vertex, toward, distance, path.hero, random) else {
             return DVec4::ZERO;
         };
