@@ -158,8 +158,8 @@ pub(crate) fn extinction_at(volume: &Volume, position: DVec3, toward: DVec3) -> 
     volume.medium.mu_t_along(toward) * density
 }
 
-/// The source term of `volume` at a place inside it where its extinction is `mu_t`: μa·Le and what is given per length, radiance per
-/// length in red, green and blue.
+/// The source term of `volume` at a place inside it where its extinction is `mu_t`: μa·Le and what is given per length, radiance
+/// per length in red, green and blue.
 pub(crate) fn source_at(volume: &Volume, position: DVec3, mu_t: f64) -> DVec3 {
     let mut source = DVec3::ZERO;
     if mu_t > 0.0 {
@@ -171,8 +171,8 @@ pub(crate) fn source_at(volume: &Volume, position: DVec3, mu_t: f64) -> DVec3 {
     source
 }
 
-/// w_light of a point, where the extinction is `mu_t`, that next-event estimation has drawn: with `probability` this light of all,
-/// which is that of `volume`, where a path goes there with the density `path_pdf`.
+/// w_light of a point, where the extinction is `mu_t`, that next-event estimation has drawn: with `probability` this light of
+/// all, which is that of `volume`, where a path goes there with the density `path_pdf`.
 pub(crate) fn light_weight(volume: &Volume, glow: &Glow, mu_t: f64, probability: f64, path_pdf: f64) -> f64 {
     let by_path = path_pdf * found(volume, mu_t, glow.distance);
     let by_light = probability * glow.density;

@@ -161,9 +161,7 @@ impl Group {
         }
         (distance, direction[2])
     }
-}
 
-impl Group {
     /// How many shapes it has.
     #[inline(always)]
     fn count(&self) -> usize {
@@ -194,6 +192,7 @@ impl Group {
             let t = -origin[2][k] / direction[2][k];
             let x = origin[0][k] + direction[0][k] * t;
             let y = origin[1][k] + direction[1][k] * t;
+            // As above.
             let is_met = (t > 0.0) & (x >= least) & (x <= most) & (y >= least) & (y <= most);
             distance[k] = if is_met { t } else { f64::INFINITY };
         }

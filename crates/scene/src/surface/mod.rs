@@ -145,7 +145,9 @@ impl Surfaces {
         let mut meetings = self.flats.intersect_all(rays);
         if !self.others.is_empty() {
             for (k, meeting) in meetings.iter_mut().enumerate() {
-                *meeting = self.meet_others(&rays.ray(k), rays.end[k], *meeting);
+                if rays.end[k] > 0.0 {
+                    *meeting = self.meet_others(&rays.ray(k), rays.end[k], *meeting);
+                }
             }
         }
         meetings
@@ -182,7 +184,7 @@ impl Surfaces {
         let mut met = self.flats.stand_in_all(rays);
         if !self.others.is_empty() {
             for (k, met) in met.iter_mut().enumerate() {
-                *met = *met || self.others_stand_in(&rays.ray(k), rays.end[k]);
+                *met = *met || (rays.end[k] > 0.0 && self.others_stand_in(&rays.ray(k), rays.end[k]));
             }
         }
         met

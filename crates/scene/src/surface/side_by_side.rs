@@ -7,7 +7,7 @@ use crate::Ray;
 /// Rays in a group.
 pub const LANES: usize = 8;
 
-/// Some rays, each up to a distance. Those that are not set go nowhere.
+/// Some rays, each up to a distance. Those that are not set end where they begin, and meet nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct RayGroup {
     /// By component, then by ray.

@@ -303,7 +303,7 @@ impl<'a> Phase<'a> {
         }
     }
 
-    /// Values for directions before, one for each way, and some for each of them afterwards; all by component.
+    /// Values between each way's direction before, and each of its `N` directions afterwards; directions are by component.
     #[inline(always)]
     pub fn values<const W: usize, const N: usize>(
         self,

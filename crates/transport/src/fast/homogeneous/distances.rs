@@ -41,8 +41,8 @@ pub(super) struct Distances<const W: usize> {
     opacity: [f32; W],
 }
 
-/// As `distance::equiangular`, by cosine and sine of the first angle and the difference of both. Where there are no such distances
-/// it is anything.
+/// As `distance::equiangular`, by cosine and sine of the first angle and the difference of both. Where there are no such
+/// distances it is anything.
 struct Equiangular<const W: usize> {
     nearest: [f32; W],
     distance: [f32; W],
@@ -93,6 +93,7 @@ impl<const W: usize> Distances<W> {
         let mut t = [[0.0; W]; N];
         for (k, t) in t.iter_mut().enumerate() {
             for w in 0..W {
+                // Beyond these it is anything, and replaced below.
                 let first = self.share[w] * N as f32;
                 t[w] = self.equiangular.at(w, (k as f32 + u[0][w]) * (1.0 / first));
             }

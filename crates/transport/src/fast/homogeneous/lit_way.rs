@@ -92,17 +92,22 @@ impl Lamps {
     }
 }
 
-/// `W` ways on which light is looked for, side by side, at `N` places each.
+/// `W` ways on which light is looked for, side by side, at `N` places each: first [`ask`](Self::ask) for some of them, then
+/// [`look`](Self::look) once, then see what was [`found`](Self::found). Those that were not asked for run through the arithmetic,
+/// and bring nothing whatever comes out.
 pub(super) struct LitWays<const W: usize, const N: usize> {
     /// The light, if any is looked for on the way.
     light: [Option<usize>; W],
+    /// With which it was drawn of all lights.
     probability: [f32; W],
     rays: [Ray; W],
     direction: [[f32; W]; 3],
+    /// Numbers by which distances are drawn, and points of the light.
     along: [[f32; W]; 2],
     u: [[f32; 2]; W],
     distances: Distances<W>,
     points: Points<W, N>,
+    /// Distances of the places.
     t: [[f32; W]; N],
     /// What each place brings.
     strength: [[f32; W]; N],

@@ -93,15 +93,21 @@ impl<'a> Homogeneous<'a> {
 }
 
 impl Homogeneous<'_> {
+    /// Whether the path may turn once more.
+    #[inline(always)]
+    fn goes_on(&self, path: &Path) -> bool {
+        self.scene.max_depth.is_none_or(|depth| path.turns < depth)
+    }
+
     /// Follows the path's ray to what it meets, and adds the light that shines there.
     #[inline(always)]
-    fn reach(&self, path: &Path, met: Option<&Meeting>, way: &mut Way, layers: &mut PathLayers<Vec3>) {
+    fn reach(&self, path: &Path, met: Option<&Meeting>, way: &mut Reached, layers: &mut PathLayers<Vec3>) {
         let scene = self.scene;
         let is_first = path.turns == 0;
         let end = met.map_or(f64::INFINITY, Meeting::distance);
         way.stretch = Stretch::new(self.fog.as_ref(), &path.ray, end);
         let collision = way.stretch.collision(path.u);
-        way.hit = None;
+        (way.hit, way.vertex) = (None, None);
         way.arrives = is_first || collision.is_none();
         let through = path.throughput * way.stretch.through;
         match met {
@@ -121,17 +127,17 @@ impl Homogeneous<'_> {
         }
     }
 
-    /// Turns the surface at the end of the path's way, if it comes to one, to light: what it reflects unless something stands in its way.
+    /// What the surface at the end of the path's way, if the path comes to one, reflects of one lamp, unless something stands
+    /// between them.
     #[inline(always)]
     fn arrive(
         &self,
         path: &Path,
-        way: &mut Way,
+        way: &mut Reached,
         draws: FirstDraws,
         random: &mut Random,
     ) -> Option<Unshadowed> {
-        let Way { stretch, hit, vertex, .. } = way;
-        *vertex = None;
+        let Reached { stretch, hit, vertex, .. } = way;
         let hit = hit.as_ref().filter(|_| way.arrives)?;
         let vertex = vertex.insert(SurfaceVertex::new(self.scene, hit, path.ray.direction, &Channels::Rgb));
         // Towards the camera with the weight of what gets through, later as often as the path does.
@@ -140,8 +146,8 @@ impl Homogeneous<'_> {
         Some(Unshadowed { light: weight * reflected.light, ..reflected })
     }
 
-    /// Turns a path whose ray ended there, the camera's for the branch of this number: at a collision, drawn with density μt T, or at the
-    /// surface; `false` if it ends there.
+    /// Turns a path whose ray ended there, the camera's for the branch of this number: at a collision, drawn with density μt T,
+    /// or at the surface; `false` if it ends there.
     #[inline(always)]
     fn turn(
         &self,
@@ -292,7 +298,7 @@ impl Homogeneous<'_> {
 
 /// Where a path's ray leads.
 #[derive(Clone)]
-struct Way {
+struct Reached {
     /// Through the medium.
     stretch: Stretch,
     /// What it meets, as far as it matters.

@@ -24,10 +24,12 @@ pub(super) struct Points<const W: usize, const N: usize> {
     places: [Option<[DVec3; N]>; W],
     /// Of lamps, the normals there.
     normal: [[[f32; W]; N]; 3],
-    /// Area of a lamp; 0 of other lights.
+    /// Area of a lamp.
     area: [f32; W],
-    /// Whether only one side shines, as 0, or both, as 1.
-    backwards: [f32; W],
+    /// Whether the light is a point, or a spot light, and has none.
+    is_point: [bool; W],
+    /// Of a lamp, 1 if its inner side shines too, and 0 otherwise.
+    shines_behind: [f32; W],
     /// Radiance or intensity of the brightest channel.
     strength: [f32; W],
 }
@@ -47,6 +49,10 @@ fn is_near(lamp: &AreaLight, from: DVec3) -> bool {
 
 /// Density over solid angle with which the point of a lamp at `hit` is drawn from `from`, in the `direction` to it.
 pub(super) fn lamp_pdf(lamp: &AreaLight, from: DVec3, direction: DVec3, hit: &Hit) -> f64 {
+    // A shining plane, or a deformed sphere: only paths find it.
+    if lamp.area() <= 0.0 {
+        return 0.0;
+    }
     if is_near(lamp, from) {
         return lamp.pdf_of_hit(from, direction, hit.position, hit.normal);
     }
@@ -80,12 +86,13 @@ impl<const W: usize, const N: usize> Points<W, N> {
             places: [None; W],
             normal: [zero; 3],
             area: [0.0; W],
-            backwards: [0.0; W],
+            is_point: [true; W],
+            shines_behind: [0.0; W],
             strength: [0.0; W],
         }
     }
 
-    /// Looks for this light on way `w`.
+    /// Draws points of this light for way `w`.
     #[inline(always)]
     pub fn set(&mut self, w: usize, light: &Light, u: [f32; 2]) {
         let (mut places, mut brightness) = ([DVec3::ZERO; N], DVec3::ZERO);
@@ -101,7 +108,8 @@ impl<const W: usize, const N: usize> Points<W, N> {
                 }
                 brightness = lamp.radiance();
                 self.area[w] = lamp.area() as f32;
-                self.backwards[w] = if lamp.is_two_sided() { 1.0 } else { 0.0 };
+                self.shines_behind[w] = if lamp.is_two_sided() { 1.0 } else { 0.0 };
+                self.is_point[w] = false;
             }
             Light::Point(point) => {
                 places = [point.position(); N];
@@ -111,7 +119,8 @@ impl<const W: usize, const N: usize> Points<W, N> {
                 places = [spot.position(); N];
                 brightness = spot.intensity(spot.axis());
             }
-            _ => {}
+            Light::Constant(_) | Light::Image(_) | Light::Sun(_) | Light::Distant(_) => {}
+            Light::Volume(_) => {}
         }
         self.places[w] = Some(places);
         (self.strength[w], self.colour[w]) = strength_and_colour(brightness);
@@ -139,10 +148,10 @@ impl<const W: usize, const N: usize> Points<W, N> {
                 let (x, y, z) = (x * inverse, y * inverse, z * inverse);
                 let [nx, ny, nz] = [&self.normal[0][k], &self.normal[1][k], &self.normal[2][k]];
                 let cos = -(x * nx[w] + y * ny[w] + z * nz[w]);
-                let shines = if cos > 0.0 { 1.0 } else { self.backwards[w] };
+                let shines = if cos > 0.0 { 1.0 } else { self.shines_behind[w] };
                 let squared = length * length;
                 let by_area = squared / (cos.abs() * self.area[w]);
-                let is_point = self.area[w] == 0.0;
+                let is_point = self.is_point[w];
                 let over = if is_point { squared } else { by_area };
                 let strength = if is_point { self.strength[w] } else { self.strength[w] * shines };
                 self.pdf[k][w] = if is_point { 0.0 } else { by_area };
@@ -153,7 +162,8 @@ impl<const W: usize, const N: usize> Points<W, N> {
         }
     }
 
-    /// What is otherwise on way `w`, along `ray`, than [`see`](Self::see) takes it to be: a lamp that is near, a spot light's cone, a light at infinity.
+    /// Corrects on way `w`, along `ray`, what [`see`](Self::see) took for a lamp that is not near, or a point that shines evenly: lamps
+    /// that are near, the cones of spots, lights at infinity.
     #[inline(always)]
     pub fn mend(&mut self, w: usize, light: &Light, ray: &Ray, t: &[[f32; W]; N], u: [f32; 2]) {
         match light {

@@ -1,8 +1,8 @@
 //! Paths side by side: in each round all of a thread's paths turn, then all follow their rays, then all look for light on
 //! them, and so on.
 //!
-//! A path runs through more code from one turn to the next than a core's first cache of instructions holds; so each part of it is done for
-//! [`TOGETHER`] paths before the next. Where arithmetic is most of a part, it is that of many paths at once: which surfaces rays
+//! A path runs through more code from one turn to the next than a core's first cache of instructions holds; so each part of
+//! it is done for [`TOGETHER`] paths before the next. Where arithmetic is most of a part, it is that of many paths at once: which surfaces rays
 //! meet, and what light there is on their way. The paths do not touch each other, so that it does not matter which are together.
 
 use glam::{DVec3, Vec3};
@@ -14,15 +14,16 @@ use tyndall_scene::surface::{LANES, RayGroup, Surfaces};
 
 use super::lit_way::{LitWays, Unshadowed};
 use super::stretch::Stretch;
-use super::{BRANCHES, FIRST, Homogeneous, LATER, Path, Way};
+use super::{BRANCHES, FIRST, Homogeneous, LATER, Path, Reached};
 use crate::fast::{Pixel, Work};
 use crate::first_draws::FirstDraws;
 use crate::path_layers::PathLayers;
 use crate::render::RenderOptions;
 use crate::wide;
 
-/// Paths in flight on a thread.
+/// Paths in flight on a thread: whole groups of [`LANES`] and [`WAYS`].
 const TOGETHER: usize = 32;
+const _: () = assert!(TOGETHER.is_multiple_of(LANES) && TOGETHER.is_multiple_of(WAYS));
 
 /// Ways on which light is looked for side by side. Loops over less the compiler unrolls, and makes no vector code of them.
 const WAYS: usize = 16;
@@ -42,12 +43,13 @@ struct Sampling {
     draws: FirstDraws,
     layers: PathLayers<Vec3>,
     /// The camera's ray, and where it led.
-    first: (Path, Way),
+    first: (Path, Reached),
     /// Number of the next branch.
     branch: u32,
-    /// That under way.
+    /// Whether one is under way, and that one.
+    is_under_way: bool,
     path: Path,
-    way: Way,
+    way: Reached,
 }
 
 impl wide::Task for Paths<'_> {
@@ -72,6 +74,10 @@ impl wide::Task for Paths<'_> {
             for at in (0..samplings.len()).rev() {
                 let sampling = &mut samplings[at];
                 while !homogeneous.go_on(sampling) {
+                    // Asked for each sample: where their paths end at once, all of them go by in a round.
+                    if cancel.load(Ordering::Relaxed) {
+                        return false;
+                    }
                     let pixel = sampling.pixel;
                     let layers = std::mem::take(&mut sampling.layers);
                     let sample = layers.into_sample(|colour| colour.as_dvec3());
@@ -84,8 +90,6 @@ impl wide::Task for Paths<'_> {
                 }
             }
             let later = FirstDraws::Independent;
-            let max_depth = homogeneous.scene.max_depth.unwrap_or(u32::MAX);
-            let goes_on = |path: &Path| path.turns < max_depth;
             for samplings in samplings.chunks_mut(LANES) {
                 let mut rays = RayGroup::default();
                 for (k, Sampling { path, .. }) in samplings.iter().enumerate() {
@@ -102,7 +106,7 @@ impl wide::Task for Paths<'_> {
                 for (number, samplings) in samplings.chunks_mut(WAYS).enumerate() {
                     let mut ways = LitWays::<WAYS, LATER>::new(fog);
                     for (w, Sampling { path, way, random, .. }) in samplings.iter_mut().enumerate() {
-                        if goes_on(path) {
+                        if homogeneous.goes_on(path) {
                             ways.ask(w, lamps, &way.stretch, later.lit_way(random), random);
                         }
                     }
@@ -118,7 +122,7 @@ impl wide::Task for Paths<'_> {
             shadows.add(surfaces, &mut samplings);
             let mut shadows = Shadows::default();
             for (slot, Sampling { path, way, random, .. }) in samplings.iter_mut().enumerate() {
-                if goes_on(path)
+                if homogeneous.goes_on(path)
                     && let Some(reflected) = homogeneous.arrive(path, way, later, random)
                 {
                     shadows.push(slot, path.scatterings, reflected.light, &reflected);
@@ -172,7 +176,7 @@ impl Sampling {
     fn nothing() -> Self {
         let path = Path::from_camera(Ray { origin: DVec3::ZERO, direction: DVec3::Z }, 1.0);
         let stretch = Stretch::new(None, &path.ray, 0.0);
-        let way = Way { stretch, hit: None, arrives: false, vertex: None };
+        let way = Reached { stretch, hit: None, arrives: false, vertex: None };
         Self {
             pixel: Pixel::default(),
             random: Random::default(),
@@ -180,6 +184,7 @@ impl Sampling {
             layers: PathLayers::default(),
             first: (path, way.clone()),
             branch: BRANCHES,
+            is_under_way: false,
             path,
             way,
         }
@@ -202,7 +207,7 @@ impl Homogeneous<'_> {
         let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
         self.reach(&path, met.as_ref(), way, layers);
         let mut branch = BRANCHES;
-        if scene.max_depth != Some(0) {
+        if self.goes_on(&path) {
             let is_seen = |light: &Unshadowed| !scene.surfaces.stand_in(&light.ray, light.distance);
             if let Some(fog) = &self.fog {
                 let mut ways = LitWays::<1, FIRST>::new(fog);
@@ -218,27 +223,28 @@ impl Homogeneous<'_> {
             branch = 0;
         }
         sampling.first.0 = path;
-        // No branch is under way: as if one had come to the greatest depth.
-        (sampling.path.turns, sampling.branch) = (u32::MAX, branch);
+        (sampling.is_under_way, sampling.branch) = (false, branch);
         (sampling.pixel, sampling.random, sampling.draws) = (pixel, random, draws);
     }
 
     /// Turns the sample's path, or goes on with its next branch; `false` if there is none left.
     #[inline(always)]
     fn go_on(&self, sampling: &mut Sampling) -> bool {
-        let Sampling { random, draws, first, branch, path, way, .. } = sampling;
-        let max_depth = self.scene.max_depth.unwrap_or(u32::MAX);
-        if path.turns < max_depth
-            && self.turn(path, (&way.stretch, way.vertex.as_ref()), 0, FirstDraws::Independent, random)
+        let Sampling { random, draws, first, branch, is_under_way, path, way, .. } = sampling;
+        let later = FirstDraws::Independent;
+        if *is_under_way
+            && self.goes_on(path)
+            && self.turn(path, (&way.stretch, way.vertex.as_ref()), 0, later, random)
         {
             return true;
         }
         let (first, end) = (&first.0, (&first.1.stretch, first.1.vertex.as_ref()));
+        *is_under_way = true;
         while *branch < BRANCHES {
-            *path = *first;
-            let draws = draws.of_branch(*branch, BRANCHES);
+            let number = *branch;
             *branch += 1;
-            if self.turn(path, end, *branch - 1, draws, random) {
+            *path = *first;
+            if self.turn(path, end, number, draws.of_branch(number, BRANCHES), random) {
                 return true;
             }
         }

@@ -55,8 +55,11 @@ impl<'a> Fog<'a> {
     /// The distances between which `ray` is in the medium before the distance `end`.
     #[inline(always)]
     fn interval(&self, ray: &Ray, end: f64) -> Option<(f64, f64)> {
-        // The medium is convex: between two places in it a ray does not leave it.
-        if let Density::Box { min, max } = &self.volume.density {
+        // The medium is convex: between two places in it a ray does not leave it. A ray without end has no second place.
+        if let Density::Box { min, max } = &self.volume.density
+            && end > 0.0
+            && end.is_finite()
+        {
             let to_local = &self.volume.world_to_local;
             let (from, to) = (to_local.transform_point3(ray.origin), to_local.transform_point3(ray.at(end)));
             let [least, greatest] = [from.min(to), from.max(to)];
@@ -66,7 +69,7 @@ impl<'a> Fog<'a> {
                 && greatest.x < max.x
                 && greatest.y < max.y
                 && greatest.z < max.z;
-            if is_inside && end > 0.0 {
+            if is_inside {
                 return Some((0.0, end));
             }
         }

@@ -8,7 +8,7 @@ use tyndall_transport::{DistanceSampler, Estimators, RenderOptions};
 use super::agreement::furnished;
 use super::{assert_same_pictures, effort};
 use crate::agreement::batches_with;
-use crate::rendering::options;
+use crate::rendering::{options, render};
 
 /// Independent films of each integrator.
 const BATCHES: u64 = 16;
@@ -135,4 +135,30 @@ fn thin_fog_around_points_under_the_sun_and_a_room_without_fog() {
         material = "mirror"
         "#;
     assert_agree("no fog", furnished(CAMERA, &format!("{WALLS}{clear}")));
+}
+
+/// A shining plane has no end, and a deformed sphere no known area: only paths find their light.
+#[test]
+fn lamps_that_cannot_be_drawn_are_found_by_paths() {
+    let lamps = r#"
+        [[shape]]
+        plane = { point = [0, -1.5, 0], normal = [0, 1, 0] }
+        material = "grey"
+        emission = { radiance = [0.4, 0.5, 0.3] }
+        [[shape]]
+        sphere = { center = [0, 0, 0], radius = 0.4 }
+        transform = { scale = [1, 1.5, 1] }
+        material = "grey"
+        emission = { radiance = [1, 2, 3] }
+        "#;
+    let fog = r#"
+        [medium]
+        mu_t = 0.6
+        albedo = [0.9, 0.8, 0.95]
+        "#;
+    for (name, fog) in [("lamps without area in fog", fog), ("lamps without area", "")] {
+        let scene = furnished(CAMERA, &format!("{fog}{lamps}"));
+        assert_eq!(render(&scene, Integrator::Fast, 93, 0..16).rejected(), 0, "{name}");
+        assert_agree(name, scene);
+    }
 }
