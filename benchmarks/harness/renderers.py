@@ -1,7 +1,7 @@
 """The renderers of the bench, each in the mode that was best for it among the unbiased ones, and how to run them once.
 
 Mitsuba's roulette, capped at 0.95, makes scene A heavy-tailed, and `volpathmis` biased: off there. Cycles renders by
-null scattering, pbrt-v4 by `volpath`. `seconds` is the time of rendering alone: without reading, building and
+null scattering, pbrt-v4 by `volpath`, Tyndall with evener samples on B, C and D. `seconds` is the time of rendering alone: without reading, building and
 compiling, but for Cycles, which prepares its octrees inside the call; `cpu_seconds` is that of all threads.
 """
 
@@ -23,8 +23,6 @@ class Tyndall:
 
     name, label = "tyndall", "Tyndall"
     samples = {"A": 16, "B": 64, "C": 64, "D": 64, "E": 64, "G": 16}
-
-    # Evener samples; the others are independent, and standard errors those of the picture.
     settings = {letter: ["--sampler", "sobol"] for letter in "BCD"}
 
     def __init__(self, binary, threads, options=()):
