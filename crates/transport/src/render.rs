@@ -113,11 +113,11 @@ impl<'a> Renderer<'a> {
                     Engine::FastSpectral(fast_scene) => {
                         fast_spectral::render_tiles(fast_scene, &mut tiles, options, cancel)
                     }
-                    Engine::Reference => trace_tiles(scene, &mut tiles, options, cancel, |ray, _, random| {
+                    Engine::Reference => trace_tiles(scene, &mut tiles, options, cancel, |ray, random| {
                         reference::trace_with(scene, options.estimators, ray, random)
                     }),
                     Engine::Spectral(spectral) => {
-                        trace_tiles(scene, &mut tiles, options, cancel, |ray, _, random| {
+                        trace_tiles(scene, &mut tiles, options, cancel, |ray, random| {
                             spectral.trace(ray, random)
                         })
                     }
@@ -232,12 +232,12 @@ fn sample_count(tile: &FilmTile) -> u64 {
 
 /// Some tiles, one path after the other, each by `trace`; `false` if cancelled.
 #[inline(always)]
-pub(crate) fn trace_tiles(
+fn trace_tiles(
     scene: &Scene,
     tiles: &mut [FilmTile],
     options: &RenderOptions,
     cancel: &AtomicBool,
-    trace: impl Fn(Ray, FirstDraws, &mut Random) -> Sample,
+    trace: impl Fn(Ray, &mut Random) -> Sample,
 ) -> bool {
     for tile in tiles {
         let rect = tile.rect();
@@ -253,7 +253,7 @@ pub(crate) fn trace_tiles(
                     let film_u = draws.film(&mut random);
                     let lens_u = draws.lens(&mut random);
                     let ray = scene.camera.ray([x, y], film_u, lens_u);
-                    tile.add(x, y, &trace(ray, draws, &mut random));
+                    tile.add(x, y, &trace(ray, &mut random));
                 }
             }
         }
