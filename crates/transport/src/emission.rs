@@ -187,6 +187,19 @@ fn found(volume: &Volume, mu_t: f64, distance: f64) -> f64 {
 /// w_path of a path that has turned at `from` with the density `path_pdf` towards `position`, where the volume glows; 1 if
 /// the volume is no light for next-event estimation.
 pub(crate) fn path_weight(scene: &Scene, number: usize, from: DVec3, position: DVec3, path_pdf: f64) -> f64 {
+    let volume = &scene.volumes[number];
+    path_weight_by(scene, number, from, position, path_pdf, |toward| extinction_at(volume, position, toward))
+}
+
+/// The same, with the extinction there for light that travels towards it as [`light_weight`] is given it.
+pub(crate) fn path_weight_by(
+    scene: &Scene,
+    number: usize,
+    from: DVec3,
+    position: DVec3,
+    path_pdf: f64,
+    extinction: impl FnOnce(DVec3) -> f64,
+) -> f64 {
     let Some(light_number) = scene.light_of_volume(number) else { return 1.0 };
     let Light::Volume(light) = &scene.lights[light_number] else { return 1.0 };
     let volume = &scene.volumes[number];
@@ -195,7 +208,7 @@ pub(crate) fn path_weight(scene: &Scene, number: usize, from: DVec3, position: D
     if distance_squared == 0.0 {
         return 1.0;
     }
-    let mu_t = extinction_at(volume, position, offset.normalize());
+    let mu_t = extinction(offset.normalize());
     let by_path = path_pdf * found(volume, mu_t, distance_squared.sqrt());
     let probability = scene.light_probability(light_number, from);
     let by_light = probability * light.pdf_volume(position) * distance_squared;

@@ -47,8 +47,8 @@ pub struct VolumeLightSample {
 enum Region {
     /// Uniformly the unit ball.
     Ball,
-    /// Cells with the probability of all up to and with each.
-    Cells(Cells, Vec<f64>),
+    /// Cells with the probability of each.
+    Cells(Cells, Shares),
 }
 
 #[derive(Debug, Clone)]
@@ -92,7 +92,7 @@ impl VolumeLight {
             None => (Region::Ball, source_at(volume, local_to_world.translation) * (4.0 / 3.0 * PI)),
             Some(cells) => {
                 let (probabilities, total) = cells.probabilities(volume, &local_to_world)?;
-                (Region::Cells(cells, probabilities), total)
+                (Region::Cells(cells, Shares::new(probabilities)), total)
             }
         };
         let power = 4.0 * PI * scale * total;
@@ -109,9 +109,9 @@ impl VolumeLight {
     pub fn sample(&self, u: [f64; 3]) -> VolumeLightSample {
         let (local, pdf) = match &self.region {
             Region::Ball => (uniform_in_ball(u), 1.0 / (4.0 / 3.0 * PI)),
-            Region::Cells(cells, cumulative) => {
-                let chosen = cumulative.partition_point(|&up_to| up_to <= u[0]).min(cumulative.len() - 1);
-                let (start, probability) = share(cumulative, chosen);
+            Region::Cells(cells, shares) => {
+                let chosen = shares.find(u[0]);
+                let (start, probability) = shares.of(chosen);
                 let first = ((u[0] - start) / probability).clamp(0.0, 1.0 - f64::EPSILON);
                 let [min, max] = cells.bounds(chosen);
                 let extent = max - min;
@@ -135,9 +135,9 @@ impl VolumeLight {
                     0.0
                 }
             }
-            Region::Cells(cells, cumulative) => cells.find(local).map_or(0.0, |cell| {
+            Region::Cells(cells, shares) => cells.find(local).map_or(0.0, |cell| {
                 let [min, max] = cells.bounds(cell);
-                share(cumulative, cell).1 / (max - min).element_product()
+                shares.of(cell).1 / (max - min).element_product()
             }),
         };
         pdf / self.scale
@@ -268,10 +268,44 @@ impl Cells {
     }
 }
 
-/// Where a cell's share begins, and how large it is.
-fn share(cumulative: &[f64], number: usize) -> (f64, f64) {
-    let start = if number == 0 { 0.0 } else { cumulative[number - 1] };
-    (start, cumulative[number] - start)
+/// What each of some cells is drawn with.
+#[derive(Debug, Clone)]
+struct Shares {
+    /// The probability of all cells up to and with each.
+    cumulative: Vec<f64>,
+    /// For each of as many equal parts of [0, 1), the cell that it begins in: where to look from (Chen & Asau 1974, "On
+    /// generating random variates from an empirical distribution").
+    guide: Vec<u32>,
+}
+
+impl Shares {
+    fn new(cumulative: Vec<f64>) -> Self {
+        let parts = cumulative.len();
+        let first = |part| cumulative.partition_point(|&up_to| up_to <= part as f64 / parts as f64) as u32;
+        let guide = (0..parts).map(first).collect();
+        Self { cumulative, guide }
+    }
+
+    /// The cell whose share `u`, in [0, 1), falls into.
+    fn find(&self, u: f64) -> usize {
+        let last = self.cumulative.len() - 1;
+        let part = (u * self.guide.len() as f64) as usize;
+        let mut cell = (self.guide[part.min(last)] as usize).min(last);
+        // Rounding may have led past it.
+        while cell > 0 && self.cumulative[cell - 1] > u {
+            cell -= 1;
+        }
+        while cell < last && self.cumulative[cell] <= u {
+            cell += 1;
+        }
+        cell
+    }
+
+    /// Where a cell's share begins, and how large it is.
+    fn of(&self, cell: usize) -> (f64, f64) {
+        let start = if cell == 0 { 0.0 } else { self.cumulative[cell - 1] };
+        (start, self.cumulative[cell] - start)
+    }
 }
 
 fn uniform_in_ball(u: [f64; 3]) -> DVec3 {

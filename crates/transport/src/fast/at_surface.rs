@@ -12,7 +12,7 @@ use glam::Vec3;
 
 impl Engine<'_> {
     /// Finds the surface at which the path's ray ends; its distance.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn look_ahead(&mut self, slot: usize) -> f32 {
         counters::count(Event::Intersection, 1);
         self.sided[slot].look_ahead(self.scene.scene, &mut self.rays.random[slot]);
@@ -53,7 +53,7 @@ impl Engine<'_> {
             for &number in &self.scene.seen_at_once {
                 let value = |toward| (vertex.value(toward).truncate(), 0.0);
                 if let Some(Direct { unshadowed, toward, distance, .. }) =
-                    light_of(scene, (number, 1.0), vertex.position(), value, path.draws, random)
+                    light_of(self.scene, (number, 1.0), vertex.position(), value, path.draws, random)
                     && unshadowed != Vec3::ZERO
                     && sided.sees_from(scene, &vertex, toward, distance, random)
                 {
@@ -66,7 +66,7 @@ impl Engine<'_> {
             let way = if self.scene.knows_all_lights {
                 choose_correction(self.scene, vertex.position(), path, value, false, random)
             } else {
-                let direct = draw_light(scene, vertex.position(), value, path.draws, random);
+                let direct = draw_light(self.scene, vertex.position(), value, path.draws, random);
                 direct.filter(|direct| direct.unshadowed != Vec3::ZERO).map(|direct| {
                     let way = (direct.toward, direct.distance);
                     path.look(path.throughput * direct.unshadowed, direct.is_glow, way);
@@ -102,8 +102,7 @@ impl Engine<'_> {
                 path.direction = onward.direction.as_vec3();
                 path.turned = onward.pdf.map(|_| vertex.position());
                 path.turn_pdf = onward.pdf.unwrap_or_default() as f32;
-                (sided.ray, sided.presence) =
-                    vertex.leave(self.scene.scene, onward.direction, &sided.presence);
+                sided.leave(self.scene.scene, vertex, onward.direction);
             }
             None => path.throughput = Vec3::ZERO,
         }

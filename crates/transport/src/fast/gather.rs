@@ -110,7 +110,7 @@ impl Engine<'_> {
                 for number in cache.lights() {
                     let probability = scene.light_probability(number, here);
                     let chosen = (number, probability);
-                    let direct = light_of(scene, chosen, here, &value, FirstDraws::Independent, random);
+                    let direct = light_of(self.scene, chosen, here, &value, FirstDraws::Independent, random);
                     if let Some(Direct { unshadowed, .. }) = direct.filter(|_| probability > 0.0) {
                         let through = cache.transmittance(number, position).unwrap_or_default();
                         path.single += (share * through * probability as f32) * albedo * unshadowed;

@@ -15,6 +15,7 @@
 mod at_surface;
 mod coarse;
 mod gather;
+mod glow;
 mod homogeneous;
 mod light_cache;
 mod march;
@@ -209,13 +210,16 @@ impl<'a> Engine<'a> {
                         None => self.escape(slot),
                     }
                 }
-                Next::Record => match self.branch(slot).or_else(|| self.resume(slot)) {
-                    Some(next) => next,
-                    None => {
+                Next::Record => {
+                    if let Some(next) = self.branch(slot) {
+                        next
+                    } else if let Some(next) = self.resume(slot) {
+                        next
+                    } else {
                         self.record(slot);
                         Next::Start
                     }
-                },
+                }
             };
         }
     }

@@ -42,7 +42,7 @@ pub(super) fn choose_direct(
     gathered: bool,
     random: &mut Random,
 ) -> Option<(DVec3, f64)> {
-    let direct = draw_light(scene.scene, from, phase.turning(path.direction), path.draws, random);
+    let direct = draw_light(scene, from, phase.turning(path.direction), path.draws, random);
     let Direct { light, unshadowed, arriving, is_glow, toward, distance } = direct?;
     let direct = path.throughput * unshadowed;
     let strength = direct.max_element();
@@ -99,7 +99,7 @@ pub(super) fn choose_correction(
     let mut chosen = None;
     for number in cache.lights() {
         let draws = FirstDraws::Independent;
-        let Some(light) = light_of(scene.scene, (number, 1.0), from, &value, draws, random) else { continue };
+        let Some(light) = light_of(scene, (number, 1.0), from, &value, draws, random) else { continue };
         let cached = cache.transmittance(number, path.position).unwrap_or_default();
         let direct = path.throughput * light.unshadowed;
         known += direct * cached;

@@ -9,7 +9,8 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{Channels, Hit, Light, Ray, Scene};
 
 use super::split::SidedFork;
-use crate::emission::{Glow, draw_glow, extinction_at, light_weight, source_at};
+use super::volume::FastScene;
+use crate::emission::{Glow, draw_glow, light_weight};
 use crate::first_draws::FirstDraws;
 use crate::surface_vertex::SurfaceVertex;
 use crate::way::{Span, Way, is_plain};
@@ -30,7 +31,7 @@ pub(super) struct Sided {
     /// Lights that are still to be looked at from the surface: what each may bring, its direction and distance.
     pub waiting: Vec<(Vec3, Vec3, f32)>,
     /// Where the path has split.
-    pub fork: Option<SidedFork>,
+    pub fork: Option<Box<SidedFork>>,
     /// Whether the scene's surfaces are [plain](crate::way::is_plain).
     is_plain: bool,
 }
@@ -80,6 +81,7 @@ impl Sided {
     }
 
     /// Finds what the path's ray meets.
+    #[inline(always)]
     pub fn look_ahead(&mut self, scene: &Scene, random: &mut Random) {
         if self.is_plain {
             self.way.follow_plainly(scene, &self.ray);
@@ -90,21 +92,38 @@ impl Sided {
 
     /// Moves to the collision at the distance `t`; its place.
     pub fn collide(&mut self, scene: &Scene, t: f64) -> DVec3 {
-        self.presence = self.way.presence_at(scene, self.ray.direction, t);
+        if !self.is_plain {
+            self.presence = self.way.presence_at(scene, self.ray.direction, t);
+        }
         self.ray.origin = self.ray.at(t);
         self.ray.origin
     }
 
     /// The surface at the end of the way.
     pub fn vertex(&mut self, scene: &Scene, hit: &Hit) -> SurfaceVertex {
-        self.presence = self.way.presence_at(scene, self.ray.direction, hit.t);
+        if !self.is_plain {
+            self.presence = self.way.presence_at(scene, self.ray.direction, hit.t);
+        }
         SurfaceVertex::new(scene, hit, self.ray.direction, &Channels::Rgb)
+    }
+
+    /// Goes on from a surface in `direction`.
+    pub fn leave(&mut self, scene: &Scene, vertex: &SurfaceVertex, direction: DVec3) {
+        if self.is_plain {
+            self.ray = vertex.depart(direction);
+        } else {
+            (self.ray, self.presence) = vertex.leave(scene, direction, &self.presence);
+        }
     }
 
     /// Whether the shadow ray from a collision gets past the surfaces.
     pub fn sees(&mut self, scene: &Scene, toward: DVec3, distance: f64, random: &mut Random) -> bool {
         let ray = Ray { origin: self.ray.origin, direction: toward };
-        self.connect(scene, &ray, distance, &self.presence.clone(), random)
+        if self.is_plain {
+            return !scene.surfaces.stand_in(&ray, distance);
+        }
+        self.shadow.follow(scene, &ray, distance, &self.presence, random);
+        self.shadow.hit.is_none()
     }
 
     /// The same from a surface.
@@ -116,22 +135,11 @@ impl Sided {
         distance: f64,
         random: &mut Random,
     ) -> bool {
-        let (ray, presence) = vertex.leave(scene, toward, &self.presence);
-        self.connect(scene, &ray, distance, &presence, random)
-    }
-
-    fn connect(
-        &mut self,
-        scene: &Scene,
-        ray: &Ray,
-        distance: f64,
-        presence: &Presence,
-        random: &mut Random,
-    ) -> bool {
         if self.is_plain {
-            return !scene.surfaces.stand_in(ray, distance);
+            return !scene.surfaces.stand_in(&vertex.depart(toward), distance);
         }
-        self.shadow.follow(scene, ray, distance, presence, random);
+        let (ray, presence) = vertex.leave(scene, toward, &self.presence);
+        self.shadow.follow(scene, &ray, distance, &presence, random);
         self.shadow.hit.is_none()
     }
 }
@@ -139,36 +147,36 @@ impl Sided {
 /// Draws a light for a vertex at `from`, of which `value` gives f or the phase function and the density of the path there.
 #[inline(always)]
 pub(super) fn draw_light(
-    scene: &Scene,
+    scene: &FastScene<'_>,
     from: DVec3,
     value: impl Fn(DVec3) -> (DVec3, f64),
     draws: FirstDraws,
     random: &mut Random,
 ) -> Option<Direct> {
-    let (number, probability) = scene.choose_light(from, draws.light(random))?;
+    let (number, probability) = scene.scene.choose_light(from, draws.light(random))?;
     light_of(scene, (number, probability), from, value, draws, random)
 }
 
 /// The same of the light of this number, drawn with this probability.
 #[inline(always)]
 pub(super) fn light_of(
-    scene: &Scene,
+    fast_scene: &FastScene<'_>,
     (number, probability): (usize, f64),
     from: DVec3,
     value: impl Fn(DVec3) -> (DVec3, f64),
     draws: FirstDraws,
     random: &mut Random,
 ) -> Option<Direct> {
+    let scene = fast_scene.scene;
     let light = &scene.lights[number];
     if let Light::Volume(light) = light {
         let u = draws.light_place_inside(random);
         let glow = draw_glow(light, from, u)?;
         let Glow { position, toward, distance, density } = glow;
-        let volume = &scene.volumes[light.volume()];
         let (value, path_pdf) = value(toward);
-        let mu_t = extinction_at(volume, position, toward);
-        let weight = light_weight(volume, &glow, mu_t, probability, path_pdf);
-        let source = source_at(volume, position, mu_t);
+        let mu_t = fast_scene.extinction_about(light.volume(), position, toward);
+        let weight = light_weight(&scene.volumes[light.volume()], &glow, mu_t, probability, path_pdf);
+        let source = fast_scene.source_drawn(light.volume(), position, toward, random);
         let arriving = source * (weight / (density * probability));
         let unshadowed = (value * arriving).as_vec3();
         let arriving = arriving.as_vec3();

@@ -73,7 +73,11 @@ impl Engine<'_> {
         path.draws = path.draws.of_branch(left, branches);
         if let Some(sided) = self.sided.get_mut(slot) {
             let (ray, presence, refraction) = (sided.ray, sided.presence.clone(), sided.refraction);
-            sided.fork = Some(SidedFork { vertex: vertex.cloned(), ray, presence, refraction });
+            let fork = SidedFork { vertex: vertex.cloned(), ray, presence, refraction };
+            match &mut sided.fork {
+                Some(place) => **place = fork,
+                None => sided.fork = Some(Box::new(fork)),
+            }
         }
     }
 
@@ -89,17 +93,18 @@ impl Engine<'_> {
         path.draws = draws.of_branch(left, self.scene.branches);
         (path.position, path.direction, path.throughput) = (position, direction, throughput);
         (path.turns, path.scatterings) = (1, scatterings);
-        let mut here = self.scene.to_world(position);
-        let mut vertex = None;
-        if let Some(sided) = self.sided.get_mut(slot) {
-            let fork = sided.fork.clone()?;
-            here = fork.ray.origin;
-            (sided.ray, sided.presence, sided.refraction) = (fork.ray, fork.presence, fork.refraction);
-            vertex = fork.vertex;
-        }
-        match vertex {
-            Some(vertex) => self.turn_at(slot, &vertex),
-            None => self.turn_in(slot, volume, here),
+        match self.sided.get_mut(slot) {
+            None => self.turn_in(slot, volume, self.scene.to_world(position)),
+            Some(sided) => {
+                let fork = sided.fork.take()?;
+                sided.presence.clone_from(&fork.presence);
+                (sided.ray, sided.refraction) = (fork.ray, fork.refraction);
+                match &fork.vertex {
+                    Some(vertex) => self.turn_at(slot, vertex),
+                    None => self.turn_in(slot, volume, fork.ray.origin),
+                }
+                self.sided[slot].fork = Some(fork);
+            }
         }
         Some(self.turned(slot, false))
     }

@@ -13,7 +13,7 @@ use super::light_cache::LightCache;
 use super::pool::Path;
 use super::sided::lights_seen_at_once;
 use super::split;
-use crate::emission::path_weight;
+use crate::emission::path_weight_by;
 
 /// Throughput below which paths play roulette in most scenes.
 const ROULETTE_THROUGHPUT: f32 = 0.25;
@@ -133,9 +133,10 @@ impl<'a> FastScene<'a> {
         if !self.has_volume_lights || emission == Vec3::ZERO {
             return 1.0;
         }
-        let pdf = f64::from(path.turn_pdf);
-        let here = self.to_world(path.position);
-        path.turned.map_or(1.0, |from| path_weight(self.scene, volume, from, here, pdf) as f32)
+        let Some(from) = path.turned else { return 1.0 };
+        let (here, pdf) = (self.to_world(path.position), f64::from(path.turn_pdf));
+        let extinction = |toward| self.extinction_about(volume, here, toward);
+        path_weight_by(self.scene, volume, from, here, pdf, extinction) as f32
     }
 
     /// The albedo of a volume at a place, and what a collision there adds.
@@ -203,9 +204,22 @@ impl<'a> FastGrid<'a> {
         }
     }
 
+    /// The same, but nothing outside the domain.
+    #[inline(always)]
+    pub fn drawn_or_nothing(&self, position: Vec3, random: &mut Random) -> f32 {
+        match self.place_inside(position) {
+            Some(place) => self.tap(place, random.f32x3()),
+            None => 0.0,
+        }
+    }
+
     /// The voxel nearest to a place relative to the scene's centre, or nothing outside the domain.
+    #[inline(always)]
     pub fn nearest_or_nothing(&self, position: Vec3) -> f32 {
-        self.place_inside(position).map_or(0.0, |place| self.nearest(place))
+        match self.place_inside(position) {
+            Some(place) => self.nearest(place),
+            None => 0.0,
+        }
     }
 
     /// The local place of one relative to the scene's centre, if it is in the domain.

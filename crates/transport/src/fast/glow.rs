@@ -1,0 +1,54 @@
+//! Media that glow, as next-event estimation sees them here: by single voxels.
+//!
+//! The light of a point, μt (1 − albedo) Le, is a product of fields, of which each is looked up by a voxel of its own, drawn
+//! with its trilinear weight: the mean of the product is the product of the means. The weights that join next-event estimation
+//! with paths that find the point themselves may be any that add up to 1; they take the extinction of the nearest voxel,
+//! where the reference integrator interpolates. Sixteen lookups a point, a seventh of the time of scene D, are three in this way.
+
+use glam::DVec3;
+use tyndall_lanes::Random;
+
+use super::volume::{FastScene, FastVolume, Kind};
+use crate::emission::{extinction_at, source_at};
+
+impl FastScene<'_> {
+    /// About μt of the volume of this number at a place in the world, for light that travels along `toward`: always the same at
+    /// the same place, for weights.
+    #[inline(always)]
+    pub(super) fn extinction_about(&self, number: usize, position: DVec3, toward: DVec3) -> f64 {
+        match &self.volumes[number] {
+            FastVolume { kind: Kind::Grid(grid), shines: None, mu_t, phase, .. } => {
+                let density = grid.nearest_or_nothing((position - self.centre).as_vec3());
+                f64::from(mu_t * phase.projected_area(toward.as_vec3()) * density)
+            }
+            _ => extinction_at(&self.scene.volumes[number], position, toward),
+        }
+    }
+
+    /// An estimate of the source term of the volume of this number at a place in the world, radiance per length in red, green
+    /// and blue.
+    #[inline(always)]
+    pub(super) fn source_drawn(
+        &self,
+        number: usize,
+        position: DVec3,
+        toward: DVec3,
+        random: &mut Random,
+    ) -> DVec3 {
+        match &self.volumes[number] {
+            volume @ FastVolume { kind: Kind::Grid(grid), shines: None, mu_t, phase, .. } => {
+                let here = (position - self.centre).as_vec3();
+                let density = grid.drawn_or_nothing(here, random);
+                if density <= 0.0 {
+                    return DVec3::ZERO;
+                }
+                let (_, emission) = self.albedo_and_emission(volume, here, random);
+                (emission * (mu_t * phase.projected_area(toward.as_vec3()) * density)).as_dvec3()
+            }
+            _ => {
+                let volume = &self.scene.volumes[number];
+                source_at(volume, position, extinction_at(volume, position, toward))
+            }
+        }
+    }
+}
