@@ -134,11 +134,11 @@ impl Sums {
                 let sum = &mut plane(&mut self.depth, count)[index];
                 *sum = sum.wrapping_add(to_fixed(sample.depth, DEPTH_FRACTION_BITS));
             }
-            if layers.albedo && sample.albedo != [0.0; 3] {
+            if layers.albedo && !is_zero(sample.albedo) {
                 let fixed = sample.albedo.map(|a| to_fixed(a, ALBEDO_FRACTION_BITS) as u64);
                 add_words(&mut plane(&mut self.albedo, count)[index], fixed);
             }
-            if layers.normal && sample.normal != [0.0; 3] {
+            if layers.normal && !is_zero(sample.normal) {
                 let fixed = sample.normal.map(|x| to_fixed(x, NORMAL_FRACTION_BITS) as u64);
                 add_words(&mut plane(&mut self.normal, count)[index], fixed);
             }
@@ -155,7 +155,7 @@ impl Sums {
             (layers.single, sample.single, &mut self.single),
             (layers.multiple, sample.multiple, &mut self.multiple),
         ] {
-            if keep && light != [0.0; 3] {
+            if keep && !is_zero(light) {
                 let fixed = light.map(|x| to_fixed(x, SUM_FRACTION_BITS));
                 add_light(&mut plane(sums, count)[index], fixed);
             }
@@ -237,6 +237,11 @@ fn plane<T: Copy + Default>(sums: &mut Vec<T>, count: usize) -> &mut [T] {
         sums.resize(count, T::default());
     }
     sums
+}
+
+/// Written out: arrays are compared by a call.
+fn is_zero([x, y, z]: [f32; 3]) -> bool {
+    x == 0.0 && y == 0.0 && z == 0.0
 }
 
 fn add_light<const N: usize>(sums: &mut [i128; N], light: [i128; N]) {

@@ -55,8 +55,8 @@ pub enum Outcome {
     Cancelled,
 }
 
-/// Tiles along each edge of a block: 64×64 pixels, neighbours that look into the same parts of the volumes.
-const BLOCK_TILES: u32 = 4;
+/// Tiles along each edge of a block: 32×32 pixels, neighbours that look into the same parts of the volumes.
+const BLOCK_TILES: u32 = 2;
 
 /// Paths that a thread takes at once, where there are enough to go round: while a pool runs empty, after the last of
 /// them has begun, it does little.

@@ -73,6 +73,7 @@ impl Way {
 
     /// Becomes the way of `ray` among [plain](is_plain) surfaces, up to the first of them; spans are left out, as every
     /// volume is present all the way.
+    #[inline(always)]
     pub fn follow_plainly(&mut self, scene: &Scene, ray: &Ray) {
         self.hit = scene.surfaces.intersect(ray, f64::INFINITY);
         self.end = self.hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);

@@ -25,5 +25,6 @@ pub(super) fn pdf(wo: DVec3, wi: DVec3) -> f64 {
 pub(super) fn sample_cosine(wo: DVec3, u: [f64; 2]) -> DVec3 {
     let (radius, phi) = (u[0].sqrt(), TAU * u[1]);
     let z = (1.0 - u[0]).max(0.0).sqrt().copysign(wo.z);
-    DVec3::new(radius * libm::cos(phi), radius * libm::sin(phi), z)
+    let (sin, cos) = libm::sincos(phi);
+    DVec3::new(radius * cos, radius * sin, z)
 }

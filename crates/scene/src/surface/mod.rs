@@ -127,7 +127,7 @@ impl Surfaces {
     }
 
     /// The nearest surface along `ray`, of unit direction, before the distance `end`.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(&self, ray: &Ray, end: f64) -> Option<Hit> {
         self.meet(ray, end).map(|meeting| self.hit(ray, &meeting))
     }

@@ -19,6 +19,8 @@ pub(super) struct Lattice {
     pub per_length: f32,
     /// Places along each axis, at least 2; x is the slowest in tables.
     places: [usize; 3],
+    /// The last place along each axis, less what keeps a neighbour ahead.
+    last: Vec3,
 }
 
 impl Lattice {
@@ -33,7 +35,8 @@ impl Lattice {
         }
         let places = (size / spacing).to_array().map(|count| count.ceil() as usize + 1);
         let (min, max) = ((min - centre).as_vec3(), (max - centre).as_vec3());
-        Some(Lattice { min, max, per_length: (1.0 / spacing) as f32, places })
+        let last = Vec3::from_array(places.map(|count| (count - 1) as f32)) * (1.0 - f32::EPSILON);
+        Some(Lattice { min, max, per_length: (1.0 / spacing) as f32, places, last })
     }
 
     /// A table of what `value` is at each place.
@@ -71,20 +74,16 @@ impl Lattice {
     }
 
     /// A table's values mixed trilinearly; outside the box, those at its border.
-    #[inline]
+    #[inline(always)]
     pub fn lookup(&self, table: &[f32], position: Vec3) -> f32 {
         let [_, ny, nz] = self.places;
         let p = self.within(position);
-        let i = [p.x as usize, p.y as usize, p.z as usize];
+        let i = [p.x as u32, p.y as u32, p.z as u32];
         let f = p - Vec3::new(i[0] as f32, i[1] as f32, i[2] as f32);
-        let at = (i[0] * ny + i[1]) * nz + i[2];
-        let row = |at: usize| table[at] + (table[at + 1] - table[at]) * f.z;
-        let face = |at: usize| {
-            let (a, b) = (row(at), row(at + nz));
-            a + (b - a) * f.y
-        };
-        let (a, b) = (face(at), face(at + ny * nz));
-        a + (b - a) * f.x
+        let at = (i[0] as usize * ny + i[1] as usize) * nz + i[2] as usize;
+        let near = mixed(&table[at..at + nz + 2], nz, f);
+        let far = mixed(&table[at + ny * nz..at + ny * nz + nz + 2], nz, f);
+        near + (far - near) * f.x
     }
 
     /// A table's value at the nearest place.
@@ -95,10 +94,16 @@ impl Lattice {
         table[(p.x as usize * ny + p.y as usize) * nz + p.z as usize]
     }
 
-    #[inline]
+    #[inline(always)]
     fn within(&self, position: Vec3) -> Vec3 {
-        let [nx, ny, nz] = self.places.map(|count| (count - 1) as f32);
-        let last = Vec3::new(nx, ny, nz) * (1.0 - f32::EPSILON);
-        ((position - self.min) * self.per_length).clamp(Vec3::ZERO, last)
+        ((position - self.min) * self.per_length).max(Vec3::ZERO).min(self.last)
     }
+}
+
+/// The first two values of two rows of `length` mixed by their shares along y and z.
+#[inline(always)]
+fn mixed(rows: &[f32], length: usize, share: Vec3) -> f32 {
+    let a = rows[0] + (rows[1] - rows[0]) * share.z;
+    let b = rows[length] + (rows[length + 1] - rows[length]) * share.z;
+    a + (b - a) * share.y
 }

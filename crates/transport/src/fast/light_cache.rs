@@ -91,7 +91,7 @@ impl LightCache {
 
     /// The transmittance to the light of this number from a place amid the volumes, relative to the scene's centre; none if
     /// the light has no table.
-    #[inline]
+    #[inline(always)]
     pub fn transmittance(&self, light: usize, position: Vec3) -> Option<f32> {
         let table = self.tables[light].as_ref()?;
         Some(tyndall_lanes::exp(-self.lattice.lookup(table, position)))

@@ -33,8 +33,21 @@ pub(super) fn step(rays: &mut Rays, volumes: &[FastVolume], tentative: &mut List
     tentative.clear();
     left.clear();
     for base in (0..POOL).step_by(WIDTH) {
-        step_group(rays, base, volumes, tentative, left);
+        // While a pool runs empty there are few rays left in it.
+        if is_any_under_way(&group(&rays.end, base)) {
+            step_group(rays, base, volumes, tentative, left);
+        }
     }
+}
+
+/// Whether any of these ends belongs to a ray.
+#[inline(always)]
+fn is_any_under_way(ends: &[f32; WIDTH]) -> bool {
+    let mut is_any = false;
+    for &end in ends {
+        is_any |= end > 0.0;
+    }
+    is_any
 }
 
 /// Rays of the pool.

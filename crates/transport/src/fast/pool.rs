@@ -15,7 +15,7 @@ use super::gather::Gathered;
 use super::split::Fork;
 
 /// Paths in flight on a thread: enough that the loads of some hide behind the work of others.
-pub(super) const POOL: usize = 512;
+pub(super) const POOL: usize = 256;
 
 /// What a ray is for, in [`Rays::shadow`]: a path's own, that looks for a collision.
 pub(super) const OWN: f32 = 0.0;

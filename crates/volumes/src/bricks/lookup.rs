@@ -42,7 +42,9 @@ impl BrickGrid {
     #[inline(always)]
     pub fn cell(&self, p: [u32; 3]) -> Cell {
         let (entry, shift) = self.entry(p);
-        Cell { corner: p.map(|x| x >> shift << shift), shift, max: entry.max() }
+        // Written out: what is given to `map` may be compiled apart, and this is asked at every step of a march.
+        let least = |x: u32| x >> shift << shift;
+        Cell { corner: [least(p[0]), least(p[1]), least(p[2])], shift, max: entry.max() }
     }
 
     /// Bounds of the filtered field in the cell around the local voxel `p`.
