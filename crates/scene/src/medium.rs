@@ -146,6 +146,22 @@ impl Volume {
         }
     }
 
+    /// Whether a place, in local coordinates, is where the density is.
+    pub fn contains(&self, local: DVec3) -> bool {
+        match &self.density {
+            Density::Sphere => local.length_squared() <= 1.0,
+            Density::Slab { bottom, top } | Density::Atmosphere { bottom, top, .. } => {
+                (*bottom..=*top).contains(&local.y)
+            }
+            _ => self.local_box().is_none_or(|[min, max]| local.cmpge(min).all() && local.cmple(max).all()),
+        }
+    }
+
+    /// The density at any place in local coordinates: none outside.
+    pub fn density_anywhere(&self, local: DVec3) -> f64 {
+        if self.contains(local) { self.density_at(local) } else { 0.0 }
+    }
+
     /// ∫ density along the local ray between two distances inside the density, in closed form; `None` for a grid.
     pub fn density_integral(&self, local: &Ray, (start, end): (f64, f64)) -> Option<f64> {
         match &self.density {

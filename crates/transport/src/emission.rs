@@ -15,7 +15,7 @@
 //!   w_path = p_ω κ/(p_ω κ + p_V d²),   w_light = 1 − w_path,
 //!
 //! where p_ω is the density with which the path goes on in that direction and κ that with which it then finds y, but for the
-//! transmittance, which both have: μt, and 1/d for what is gathered on the way.
+//! transmittance, which both have: μt, or something like it, and 1/d for what is gathered on the way.
 
 use std::ops::ControlFlow;
 
@@ -99,11 +99,16 @@ pub(crate) fn emission_factor_along(volume: &Volume, ray: &Ray, t: f64) -> f64 {
     emission_per_length_factor(volume, ray.at(t))
 }
 
-/// What multiplies the emission per length of `volume` at a place inside it.
+/// What multiplies the emission per length of `volume` at any place.
 pub(crate) fn emission_per_length_factor(volume: &Volume, position: DVec3) -> f64 {
+    let local = volume.world_to_local.transform_point3(position);
     match emission_field(volume) {
-        Some(_) => volume.emission_factor(position),
-        None => volume.density_at(volume.world_to_local.transform_point3(position)),
+        // Beside a density grid there may be flames as well.
+        Some(_) if matches!(volume.density, Density::Grid(_)) || volume.contains(local) => {
+            volume.emission_factor(position)
+        }
+        Some(_) => 0.0,
+        None => volume.density_anywhere(local),
     }
 }
 
@@ -152,13 +157,14 @@ pub(crate) fn draw_glow(light: &VolumeLight, from: DVec3, u: [f64; 3]) -> Option
     })
 }
 
-/// μt of `volume` at a place inside it, for light that travels along `toward`.
+/// μt of `volume` at any place, for light that travels along `toward`. Points of a light may lie beside its volume, where no path
+/// finds them.
 pub(crate) fn extinction_at(volume: &Volume, position: DVec3, toward: DVec3) -> f64 {
-    let density = volume.density_at(volume.world_to_local.transform_point3(position));
+    let density = volume.density_anywhere(volume.world_to_local.transform_point3(position));
     volume.medium.mu_t_along(toward) * density
 }
 
-/// The source term of `volume` at a place inside it where its extinction is `mu_t`: μa·Le and what is given per length, radiance
+/// The source term of `volume` at a place where its extinction is `mu_t`: μa·Le and what is given per length, radiance
 /// per length in red, green and blue.
 pub(crate) fn source_at(volume: &Volume, position: DVec3, mu_t: f64) -> DVec3 {
     let mut source = DVec3::ZERO;

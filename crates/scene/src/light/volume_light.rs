@@ -320,10 +320,7 @@ fn uniform_in_ball(u: [f64; 3]) -> DVec3 {
 fn source_at(volume: &Volume, position: DVec3) -> DVec3 {
     let medium = &volume.medium;
     let local = volume.world_to_local.transform_point3(position);
-    let is_inside = match &volume.density {
-        Density::Sphere => local.length_squared() <= 1.0,
-        _ => volume.local_box().is_none_or(|[min, max]| local.cmpge(min).all() && local.cmple(max).all()),
-    };
+    let is_inside = volume.contains(local);
     let density = if is_inside { volume.density_at(local) } else { 0.0 };
     let mut source = DVec3::ZERO;
     if density > 0.0 && medium.mu_t > 0.0 {

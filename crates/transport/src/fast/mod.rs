@@ -1,14 +1,14 @@
 //! The fast engine: the estimators of the reference integrator, with many paths in flight on each thread.
 //!
-//! A thread keeps a pool of 512 rays. Each round takes every ray one step through its grid ([`march`]), and then
+//! A thread keeps a pool of 256 rays. Each round takes every ray one step through its grid ([`march`]), and then
 //! looks after the few to which something happened: a path that collided is scattered, one that left is added to
 //! its pixel and its place goes to the next path. Paths do not touch each other and draw from random numbers of
 //! their own, so the picture does not depend on who shared a pool with whom.
 //!
 //! It differs from the reference in five ways, none of which changes an expected value: one random voxel in place of
-//! eight interpolated (see [`march`]), f32 relative to the scene's centre, roulette before shadow rays ([`next_event`]),
-//! in thin grids and fires camera rays that bring light from every tentative collision ([`gather`]), and paths that split
-//! around fires ([`split`]).
+//! eight interpolated (see [`march`], and [`glow`], which has weights of its own), f32 relative to the scene's centre,
+//! roulette before shadow rays ([`next_event`]), in thin grids and fires camera rays that bring light from every tentative
+//! collision ([`gather`]), and paths that split around fires ([`split`]).
 //!
 //! Scenes of one homogeneous medium, or none, need no march and are traced otherwise ([`homogeneous`]).
 

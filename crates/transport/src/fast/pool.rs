@@ -1,8 +1,8 @@
 //! The paths in flight on one thread.
 //!
 //! What the march touches at every step stands in arrays, one for each quantity, so that its arithmetic runs over
-//! many paths at once; the rest of a path is needed only when something happens to it. 512 paths take about
-//! 130 KiB and stay in a core's L2 cache.
+//! many paths at once; the rest of a path is needed only when something happens to it. The arrays of 256
+//! paths take 26 KiB and stay near the core.
 
 use glam::{DVec3, Vec3};
 use tyndall_lanes::Random;

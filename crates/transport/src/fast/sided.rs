@@ -20,7 +20,7 @@ use crate::way::{Span, Way, is_plain};
 pub(super) struct Sided {
     /// The path's own ray.
     pub ray: Ray,
-    /// The volumes that are present where it begins.
+    /// The volumes that are present where it begins; not kept up amid plain surfaces, where all are.
     pub presence: Presence,
     /// What it meets.
     pub way: Way,

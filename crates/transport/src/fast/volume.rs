@@ -222,6 +222,19 @@ impl<'a> FastGrid<'a> {
         }
     }
 
+    /// Bound of the values about a place relative to the scene's centre, or nothing outside the domain.
+    #[inline(always)]
+    pub fn bound_or_nothing(&self, position: Vec3) -> f32 {
+        match self.place_inside(position) {
+            Some(place) => {
+                let voxel = [place.x as i32 as u32, place.y as i32 as u32, place.z as i32 as u32];
+                let max = self.grid.cell(voxel).max;
+                if max > 0.0 { max } else { 0.0 }
+            }
+            None => 0.0,
+        }
+    }
+
     /// The local place of one relative to the scene's centre, if it is in the domain.
     #[inline(always)]
     fn place_inside(&self, position: Vec3) -> Option<Vec3> {

@@ -400,7 +400,7 @@ impl<'a> SpectralScene<'a> {
     /// The source term of a volume at a place, μa·Le and what is given per length.
     fn source_at(&self, number: usize, position: DVec3, toward: DVec3) -> DVec4 {
         let (volume, medium) = (&self.scene.volumes[number], &self.media[number]);
-        let density = volume.density_at(volume.world_to_local.transform_point3(position));
+        let density = volume.density_anywhere(volume.world_to_local.transform_point3(position));
         let (albedo, emission) = volume.colours_at(position, medium, &self.channels);
         let by_collisions = medium.mu_t_along(toward) * density * (DVec4::ONE - albedo) * emission;
         by_collisions + medium.emission_per_length * emission_per_length_factor(volume, position)

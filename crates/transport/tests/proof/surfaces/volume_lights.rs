@@ -14,7 +14,7 @@ use crate::scenes::{scene, with_next_event};
 use crate::statistics::two_sided_quantile;
 
 /// A glowing medium over a floor, whose light arrives directly or after being reflected once.
-const GLOWING: [(&str, &str); 5] = [
+const GLOWING: [(&str, &str); 7] = [
     ("a ball by Le", "sphere = { center = [0, 0, 0], radius = 0.4 }\n mu_t = 3\n albedo = 0.2\n emission = [3, 2, 1]"),
     (
         "a box by length",
@@ -30,6 +30,18 @@ const GLOWING: [(&str, &str); 5] = [
         "a grid by length",
         "file = \"random.npy\"\n mu_t = 2\n albedo = 0.3\n emission_per_length = [3, 2, 1]
          transform = { scale = 0.07, translate = [-0.4, -0.5, -0.3] }",
+    ),
+    (
+        "a ball of many albedos",
+        "sphere = { center = [5.5, 5.5, 5.5], radius = 6 }\n mu_t = 3\n albedo = 0.3\n emission = [3, 2, 1]
+         albedo_grid = { file = \"random.npy\" }
+         transform = { scale = 0.06, translate = [-0.4, -0.5, -0.3] }",
+    ),
+    (
+        "a box of flames that would reach beyond it",
+        "box = { min = [3, 4, 3], max = [9, 8, 8] }\n mu_t = 3\n albedo = 0.3\n emission = [3, 2, 1]
+         emission_grid = { file = \"random.npy\" }
+         transform = { scale = 0.09, translate = [-0.6, -0.7, -0.5] }",
     ),
     (
         "a box that is there only inside a ball",
