@@ -9,7 +9,7 @@ use tyndall_optics::planck::{self, BlackbodyColours};
 use tyndall_volumes::BrickGrid;
 
 use crate::medium::box_interval;
-use crate::{Ray, Volume};
+use crate::{Density, Ray, Volume};
 
 /// A scalar grid that stands somewhere.
 #[derive(Debug, Clone)]
@@ -118,6 +118,17 @@ impl Volume {
     pub fn emission_factor(&self, position: DVec3) -> f64 {
         let emission = self.fields.as_ref().and_then(|fields| fields.emission.as_ref());
         emission.map_or(1.0, |(field, scale)| field.value(position) * scale)
+    }
+
+    /// What multiplies the emission per length at any place: the emission grid if there is one, the density otherwise.
+    pub fn emission_per_length_factor(&self, position: DVec3) -> f64 {
+        let local = self.world_to_local.transform_point3(position);
+        if self.fields.as_ref().is_none_or(|fields| fields.emission.is_none()) {
+            return self.density_anywhere(local);
+        }
+        // Beside a grid of densities there may be flames as well.
+        let is_lit = matches!(self.density, Density::Grid(_)) || self.contains(local);
+        if is_lit { self.emission_factor(position) } else { 0.0 }
     }
 
     /// What multiplies the albedo of red, green and blue at a place.

@@ -96,20 +96,7 @@ pub(crate) fn emitting_stretch(volume: &Volume, ray: &Ray, range: (f64, f64)) ->
 
 /// What multiplies the emission per length of `volume` at a distance inside its [`emitting_stretch`].
 pub(crate) fn emission_factor_along(volume: &Volume, ray: &Ray, t: f64) -> f64 {
-    emission_per_length_factor(volume, ray.at(t))
-}
-
-/// What multiplies the emission per length of `volume` at any place.
-pub(crate) fn emission_per_length_factor(volume: &Volume, position: DVec3) -> f64 {
-    let local = volume.world_to_local.transform_point3(position);
-    match emission_field(volume) {
-        // Beside a density grid there may be flames as well.
-        Some(_) if matches!(volume.density, Density::Grid(_)) || volume.contains(local) => {
-            volume.emission_factor(position)
-        }
-        Some(_) => 0.0,
-        None => volume.density_anywhere(local),
-    }
+    volume.emission_per_length_factor(ray.at(t))
 }
 
 /// An unbiased estimate of the weighted integral of a grid's values along a ray in the coordinates of its filter.
@@ -172,7 +159,7 @@ pub(crate) fn source_at(volume: &Volume, position: DVec3, mu_t: f64) -> DVec3 {
         source += (DVec3::ONE - volume.albedo_at(position)) * volume.emission_at(position) * mu_t;
     }
     if volume.medium.emission_per_length != DVec3::ZERO {
-        source += volume.medium.emission_per_length * emission_per_length_factor(volume, position);
+        source += volume.medium.emission_per_length * volume.emission_per_length_factor(position);
     }
     source
 }

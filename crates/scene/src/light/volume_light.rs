@@ -320,8 +320,7 @@ fn uniform_in_ball(u: [f64; 3]) -> DVec3 {
 fn source_at(volume: &Volume, position: DVec3) -> DVec3 {
     let medium = &volume.medium;
     let local = volume.world_to_local.transform_point3(position);
-    let is_inside = volume.contains(local);
-    let density = if is_inside { volume.density_at(local) } else { 0.0 };
+    let density = volume.density_anywhere(local);
     let mut source = DVec3::ZERO;
     if density > 0.0 && medium.mu_t > 0.0 {
         let mu_t = medium.chromatic.as_ref().map_or(DVec3::splat(medium.mu_t), |chromatic| chromatic.mu_t);
@@ -329,15 +328,7 @@ fn source_at(volume: &Volume, position: DVec3) -> DVec3 {
         source += density * mu_a * volume.emission_at(position);
     }
     if medium.emission_per_length != DVec3::ZERO {
-        let has_grid = volume.fields.as_ref().is_some_and(|fields| fields.emission.is_some());
-        // Beside a grid of densities there may be flames as well.
-        let is_lit = is_inside || matches!(volume.density, Density::Grid(_));
-        let factor = match (has_grid, is_lit) {
-            (true, true) => volume.emission_factor(position),
-            (true, false) => 0.0,
-            (false, _) => density,
-        };
-        source += medium.emission_per_length * factor;
+        source += medium.emission_per_length * volume.emission_per_length_factor(position);
     }
     source.max(DVec3::ZERO)
 }

@@ -29,30 +29,28 @@ impl FastScene<'_> {
         }
     }
 
-    /// An estimate of the source term of the volume of this number at a place in the world, radiance per length in red, green
-    /// and blue.
+    /// The same, and an estimate of the source term there, radiance per length in red, green and blue.
     #[inline(always)]
-    pub(super) fn source_drawn(
+    pub(super) fn extinction_and_source(
         &self,
         number: usize,
         position: DVec3,
         toward: DVec3,
         random: &mut Random,
-    ) -> DVec3 {
-        match &self.volumes[number] {
+    ) -> (f64, DVec3) {
+        let about = self.extinction_about(number, position, toward);
+        let source = match &self.volumes[number] {
             volume @ FastVolume { kind: Kind::Grid(grid), shines: None, mu_t, phase, .. } => {
                 let here = (position - self.centre).as_vec3();
                 let density = grid.drawn_or_nothing(here, random);
                 if density <= 0.0 {
-                    return DVec3::ZERO;
+                    return (about, DVec3::ZERO);
                 }
                 let (_, emission) = self.albedo_and_emission(volume, here, random);
                 (emission * (mu_t * phase.projected_area(toward.as_vec3()) * density)).as_dvec3()
             }
-            _ => {
-                let volume = &self.scene.volumes[number];
-                source_at(volume, position, extinction_at(volume, position, toward))
-            }
-        }
+            _ => source_at(&self.scene.volumes[number], position, about),
+        };
+        (about, source)
     }
 }

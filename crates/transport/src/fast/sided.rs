@@ -174,9 +174,8 @@ pub(super) fn light_of(
         let glow = draw_glow(light, from, u)?;
         let Glow { position, toward, distance, density } = glow;
         let (value, path_pdf) = value(toward);
-        let mu_t = fast_scene.extinction_about(light.volume(), position, toward);
+        let (mu_t, source) = fast_scene.extinction_and_source(light.volume(), position, toward, random);
         let weight = light_weight(&scene.volumes[light.volume()], &glow, mu_t, probability, path_pdf);
-        let source = fast_scene.source_drawn(light.volume(), position, toward, random);
         let arriving = source * (weight / (density * probability));
         let unshadowed = (value * arriving).as_vec3();
         let arriving = arriving.as_vec3();

@@ -186,7 +186,7 @@ impl<'a> FastGrid<'a> {
     #[inline(always)]
     pub fn tap(&self, place: Vec3, u: [f32; 3]) -> f32 {
         let place = place + self.spread * Vec3::from_array(u);
-        let voxel = [place.x as i32 as u32, place.y as i32 as u32, place.z as i32 as u32];
+        let voxel = voxel_around(place);
         let value = match self.grid.bricks() {
             Bricks::U8(bricks) => self.grid.local_voxel(bricks, voxel),
             Bricks::F16(bricks) => self.grid.local_voxel(bricks, voxel),
@@ -214,23 +214,15 @@ impl<'a> FastGrid<'a> {
     }
 
     /// The voxel nearest to a place relative to the scene's centre, or nothing outside the domain.
-    #[inline(always)]
     pub fn nearest_or_nothing(&self, position: Vec3) -> f32 {
-        match self.place_inside(position) {
-            Some(place) => self.nearest(place),
-            None => 0.0,
-        }
+        self.place_inside(position).map_or(0.0, |place| self.nearest(place))
     }
 
     /// Bound of the values about a place relative to the scene's centre, or nothing outside the domain.
     #[inline(always)]
     pub fn bound_or_nothing(&self, position: Vec3) -> f32 {
         match self.place_inside(position) {
-            Some(place) => {
-                let voxel = [place.x as i32 as u32, place.y as i32 as u32, place.z as i32 as u32];
-                let max = self.grid.cell(voxel).max;
-                if max > 0.0 { max } else { 0.0 }
-            }
+            Some(place) => self.grid.cell(voxel_around(place)).max.max(0.0),
             None => 0.0,
         }
     }
@@ -247,6 +239,12 @@ impl<'a> FastGrid<'a> {
     pub fn nearest(&self, place: Vec3) -> f32 {
         self.tap(place, [0.5; 3])
     }
+}
+
+/// The voxel that a local place lies in.
+#[inline(always)]
+fn voxel_around(place: Vec3) -> [u32; 3] {
+    [place.x as i32 as u32, place.y as i32 as u32, place.z as i32 as u32]
 }
 
 impl<'a> FastVolume<'a> {

@@ -48,8 +48,7 @@ use tyndall_scene::surface::Presence;
 use tyndall_scene::{ChannelMedium, Channels, Hit, Light, Observer, Ray, Scene};
 
 use crate::emission::{
-    Glow, draw_glow, emission_factor_along, emission_per_length_factor, emitting_stretch, extinction_at,
-    light_weight, path_weight,
+    Glow, draw_glow, emission_factor_along, emitting_stretch, extinction_at, light_weight, path_weight,
 };
 use crate::path_layers::{DirectLight, FirstMet, PathLayers};
 use crate::roulette::survival;
@@ -403,7 +402,7 @@ impl<'a> SpectralScene<'a> {
         let density = volume.density_anywhere(volume.world_to_local.transform_point3(position));
         let (albedo, emission) = volume.colours_at(position, medium, &self.channels);
         let by_collisions = medium.mu_t_along(toward) * density * (DVec4::ONE - albedo) * emission;
-        by_collisions + medium.emission_per_length * emission_per_length_factor(volume, position)
+        by_collisions + medium.emission_per_length * volume.emission_per_length_factor(position)
     }
 
     /// The shadow ray from a vertex; none if nothing gets through.
