@@ -78,6 +78,9 @@ pub struct Args {
     /// less noise and standard errors that are upper estimates
     #[arg(long, value_name = "independent|sobol", value_parser = parse_sampler)]
     sampler: Option<Sampler>,
+    /// Give pixels different numbers of samples, `spp` on average: more where the picture is noisy and samples cost little
+    #[arg(long)]
+    adaptive: bool,
     #[command(flatten)]
     estimators: EstimatorArgs,
     /// Save the exact sums here every now and then and at the end, for --resume
@@ -123,6 +126,7 @@ impl Args {
             set: Vec::new(),
             integrator: None,
             sampler: None,
+            adaptive: false,
             estimators: EstimatorArgs::default(),
             checkpoint: None,
             checkpoint_every: CHECKPOINT_EVERY,
@@ -229,6 +233,7 @@ fn overrides(args: &Args) -> Vec<String> {
     let integrator = args.integrator.or(args.estimators.integrator());
     overrides.extend(integrator.map(|integrator| format!("render.integrator={}", name(integrator))));
     overrides.extend(args.sampler.map(|sampler| format!("render.sampler={}", sampler_name(sampler))));
+    overrides.extend(args.adaptive.then(|| "render.adaptive=true".to_owned()));
     overrides
 }
 

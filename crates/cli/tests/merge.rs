@@ -55,7 +55,7 @@ fn commands(folder: &Folder, line: &str) -> Vec<String> {
 #[test]
 fn the_commands_for_what_is_missing_complete_the_picture() {
     let folder = Folder::new();
-    let options = "--seed 4 --sampler sobol --integrator reference";
+    let options = "--seed 4 --sampler sobol --adaptive --integrator reference";
     folder.done(&format!("render scene.toml --spp 16 {options} -o whole.acc"));
     std::fs::create_dir(folder.path("parts")).unwrap();
     for (start, end) in [(0, 3), (5, 6), (8, 12)] {

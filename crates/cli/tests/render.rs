@@ -64,6 +64,30 @@ fn merged_parts_are_the_whole_and_make_the_same_picture() {
 }
 
 #[test]
+fn adaptive_parts_are_the_whole_and_know_their_numbers_of_samples() {
+    let folder = Folder::new();
+    folder.done("render scene.toml --adaptive --samples 0..8 -o a.acc");
+    folder.done("render scene.toml --adaptive --samples 8..40 --threads 1 -o b.acc");
+    folder.done("render scene.toml --adaptive --spp 40 -o whole.acc -o whole.json");
+    folder.done("merge b.acc a.acc -o merged.acc");
+    same_film(&folder, "whole.acc", "merged.acc");
+    folder.done("render scene.toml --adaptive --spp 5 --checkpoint c.acc -o c.png");
+    folder.done("render scene.toml --adaptive --spp 40 --checkpoint c.acc --resume -o c.png");
+    same_film(&folder, "whole.acc", "c.acc");
+
+    let film = folder.accumulation("whole.acc").film;
+    let pixels = (0..24).flat_map(|y| (0..32).map(move |x| (x, y)));
+    let counts: Vec<u64> = pixels.map(|(x, y)| film.sample_count(x, y)).collect();
+    assert!(counts.iter().max() > Some(&50) && counts.iter().min() < Some(&30), "{counts:?}");
+    assert!((39.0..=40.0).contains(&film.mean_sample_count()), "{}", film.mean_sample_count());
+    assert_eq!(film.least_sample_count(), *counts.iter().min().unwrap());
+
+    folder.done("render scene.toml --samples 8..40 -o even.acc");
+    let run = folder.run("merge a.acc even.acc -o refused.exr");
+    assert!(run.code == Some(1) && run.error().contains("adaptive=yes"), "{}", run.err);
+}
+
+#[test]
 fn a_crop_is_a_picture_of_its_own_size_in_the_window_of_the_whole() {
     let folder = Folder::new();
     folder.done("render scene.toml --set film.crop=[8,6,10,12] -o part.acc -o part.exr");

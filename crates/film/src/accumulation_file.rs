@@ -14,7 +14,7 @@
 //! A plane holds one record a pixel: `pixels` 128 bytes (Σx of R, G, B as i128; Σx² of R, G, B as 192 bits; u64
 //! hits), `largest` 4 (greatest luminance of a sample, f32), `rejected` 4 (u32 samples that the sums leave out), `depth` 16,
 //! `albedo` 24, `emission`, `single` and `multiple` 48, `normal` 24, `object` 4 (u32), `catcher` 40 (Σ of both lights as
-//! i128; u64 rays). Planes of zeros are left out. Files of versions 1 and 2, which lack `largest` and counted rejected
+//! i128; u64 rays), `effort` 8 (u64), `rates` 2 (u16, samples a round in 1/4096; a picture without has one a round). Planes of zeros are left out. Files of versions 1 and 2, which lack `largest` and counted rejected
 //! samples as black ones of unknown pixels, are refused: nothing in them tells how far their errors can be trusted. Before compression the bytes of a block are
 //! transposed, all first bytes of its records, then all second ones: the high bytes of neighbouring sums are equal, most
 //! of them zero, and compress well.
@@ -32,6 +32,7 @@ use crate::metadata::ImageMetadata;
 use crate::plane_codec::{decode_plane, encode_plane};
 use crate::provenance::Provenance;
 use crate::ranges::SampleRanges;
+use crate::rates::Rates;
 use crate::sample::Layers;
 use crate::sums::Sums;
 
@@ -80,6 +81,8 @@ enum Plane {
     Normal,
     Object,
     Catcher,
+    Effort,
+    Rates,
 }
 
 impl Accumulation {
@@ -144,6 +147,8 @@ impl Accumulation {
             (Plane::Normal, !sums.normal.is_empty()),
             (Plane::Object, !sums.object.is_empty()),
             (Plane::Catcher, !sums.catcher.is_empty()),
+            (Plane::Effort, !sums.effort.is_empty()),
+            (Plane::Rates, film.rates.is_some()),
         ];
         let header = Header {
             width: film.width,
@@ -174,6 +179,8 @@ impl Accumulation {
                 Plane::Normal => encode_plane(&mut file, &sums.normal)?,
                 Plane::Object => encode_plane(&mut file, &sums.object)?,
                 Plane::Catcher => encode_plane(&mut file, &sums.catcher)?,
+                Plane::Effort => encode_plane(&mut file, &sums.effort)?,
+                Plane::Rates => encode_plane(&mut file, film.rates.as_ref().map_or(&[], Rates::as_steps))?,
             }
         }
         let sum = file.crc.sum();
@@ -270,7 +277,7 @@ impl Header {
             format!("the sums of {}x{} pixels", self.width, self.height)
         })
         .map_err(|error| error.to_string())?;
-        let mut sums = Sums::default();
+        let (mut sums, mut rates) = (Sums::default(), Vec::new());
         for plane in &self.planes {
             match plane {
                 Plane::Pixels => decode_plane(blocks, &mut sums.pixels, count),
@@ -284,6 +291,8 @@ impl Header {
                 Plane::Normal => decode_plane(blocks, &mut sums.normal, count),
                 Plane::Object => decode_plane(blocks, &mut sums.object, count),
                 Plane::Catcher => decode_plane(blocks, &mut sums.catcher, count),
+                Plane::Effort => decode_plane(blocks, &mut sums.effort, count),
+                Plane::Rates => decode_plane(blocks, &mut rates, count),
             }
             .map_err(|what| format!("has a bad plane {plane:?}: {what}"))?;
         }
@@ -293,11 +302,13 @@ impl Header {
         if !sums.largest.iter().all(|&luminance| (0.0..f32::INFINITY).contains(&luminance)) {
             return Err("has a bad plane Largest: it holds what is no luminance".into());
         }
+        let rates = (!rates.is_empty()).then(|| Rates::from_steps(rates)).transpose();
         Ok(Film {
             width: self.width,
             height: self.height,
             layers: self.layers,
             sums,
+            rates: rates.map_err(|what| format!("has a bad plane Rates: {what}"))?,
             complete: self.samples.clone(),
             open: self.open.as_ref().map(|open| self.open_pass(open)).transpose()?,
         })

@@ -123,7 +123,8 @@ impl Film {
     /// those that these are over; and as far as they are kept, `Depth.Z` mean distance to the first collision or surface (+∞ where there was none),
     /// `Albedo.*` and `Normal.*` their means there (the normal of a collision counts as 0, and the mean is no unit
     /// vector), the mean radiance that media emit or scatter, `Emission.*`, `Single.*`, `Multiple.*`, `ObjectId.Id` the
-    /// greatest number of the objects seen (exact up to 2^24), and `ShadowCatcher.A` the opacity of shadows.
+    /// greatest number of the objects seen (exact up to 2^24), `ShadowCatcher.A` the opacity of shadows, and `Effort` the
+    /// random numbers that a sample took.
     ///
     /// Coverage is the fraction of camera paths that met a medium or a surface other than a shadow catcher. With C the
     /// reflected luminance of the camera rays that end on catchers,
@@ -178,7 +179,15 @@ impl Film {
         if self.layers.shadow_catcher {
             self.push(&mut channels, "ShadowCatcher.A", |i, _| self.shadow_opacity(i));
         }
+        if self.layers.effort {
+            self.push(&mut channels, "Effort", |i, n| self.effort(i, n));
+        }
         channels
+    }
+
+    /// Random numbers that a sample of the pixel took, on average.
+    pub(crate) fn effort(&self, index: usize, n: u64) -> f64 {
+        self.sums.effort.get(index).map_or(0.0, |&effort| effort as f64) / n.max(1) as f64
     }
 
     fn push(&self, channels: &mut Vec<Channel>, name: &str, value: impl Fn(usize, u64) -> f64) {
@@ -209,7 +218,7 @@ impl Film {
         }
     }
 
-    fn index(&self, x: u32, y: u32) -> usize {
+    pub(crate) fn index(&self, x: u32, y: u32) -> usize {
         assert!(x < self.width && y < self.height, "({x}, {y}) is no pixel of the film");
         y as usize * self.width as usize + x as usize
     }
@@ -239,11 +248,11 @@ impl Film {
         }
     }
 
-    fn pixel_mean(&self, index: usize, n: u64) -> [f64; 3] {
+    pub(crate) fn pixel_mean(&self, index: usize, n: u64) -> [f64; 3] {
         mean_of(self.sums.pixels[index].radiance, n)
     }
 
-    fn pixel_standard_error(&self, index: usize, n: u64) -> [f64; 3] {
+    pub(crate) fn pixel_standard_error(&self, index: usize, n: u64) -> [f64; 3] {
         let pixel = &self.sums.pixels[index];
         [0, 1, 2].map(|c| (sample_variance(n, pixel.radiance[c], pixel.squares[c]) / n.max(1) as f64).sqrt())
     }
@@ -277,10 +286,11 @@ mod tests {
 
     /// A film one pixel high whose pixels get the samples given.
     fn film(pixels: &[&[Sample]]) -> Film {
-        let mut film = Film::new(pixels.len() as u32, 1, Layers::ALL).unwrap();
+        let layers = Layers { effort: true, ..Layers::ALL };
+        let mut film = Film::new(pixels.len() as u32, 1, layers).unwrap();
         let n = pixels[0].len() as u64;
         film.open_range(0).unwrap();
-        let mut tile = FilmTile::new(film.tile_rect(0), 0..n, Layers::ALL);
+        let mut tile = FilmTile::new(film.tile_rect(0), 0..n, layers);
         for (x, samples) in pixels.iter().enumerate() {
             samples.iter().for_each(|sample| tile.add(x as u32, 0, sample));
         }
@@ -347,6 +357,7 @@ mod tests {
             emission: [1.0; 3],
             single: [0.5; 3],
             multiple: [1.5; 3],
+            effort: 12,
         };
         let other = Sample { depth: 20.0, normal: [0.0; 3], object: 16_777_213, ..hit };
         let film = film(&[&[hit, other, grey(1.0), grey(1.0)]]);
@@ -365,6 +376,7 @@ mod tests {
             ("Normal.Y", -0.5),
             ("ObjectId.Id", 16_777_213.0),
             ("ShadowCatcher.A", 0.0),
+            ("Effort", 6.0),
         ] {
             assert_eq!(value(&film, name), expected, "{name}");
         }

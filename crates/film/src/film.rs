@@ -10,7 +10,9 @@ use std::ops::Range;
 
 use tyndall_machine::memory::{self, MemoryError};
 
+use crate::fixed_point::MAX_SAMPLES;
 use crate::ranges::{RangeError, SampleRanges};
+use crate::rates::{self, Rates};
 use crate::sample::{Layers, Sample};
 use crate::sums::Sums;
 
@@ -38,7 +40,9 @@ pub struct Rect {
 #[derive(Debug, Clone)]
 pub struct FilmTile {
     rect: Rect,
-    samples: Range<u64>,
+    rounds: Range<u64>,
+    /// Rates of its pixels, if they differ.
+    rates: Vec<u16>,
     layers: Layers,
     sums: Sums,
 }
@@ -46,8 +50,8 @@ pub struct FilmTile {
 impl FilmTile {
     /// An empty tile for `samples` of every pixel of `rect`, which is one of [`Film::tile_rect`].
     pub fn new(rect: Rect, samples: Range<u64>, layers: Layers) -> Self {
-        let pixels = rect.width as usize * rect.height as usize;
-        Self { rect, samples, layers, sums: Sums::zero(pixels) }
+        let sums = Sums::zero(rect.pixels());
+        Self { rect, rounds: samples, rates: Vec::new(), layers, sums }
     }
 
     /// Where the tile is.
@@ -55,18 +59,52 @@ impl FilmTile {
         self.rect
     }
 
-    /// Which samples every pixel of it gets.
-    pub fn samples(&self) -> Range<u64> {
-        self.samples.clone()
+    /// Which rounds of samples it gets: without [`Rates`] one sample a round for every pixel.
+    pub fn rounds(&self) -> Range<u64> {
+        self.rounds.clone()
+    }
+
+    /// Numbers of the samples that pixel (`x`, `y`) of the film, which must lie in [`rect`](Self::rect), gets in some rounds.
+    #[inline(always)]
+    pub fn samples_of(&self, x: u32, y: u32, rounds: Range<u64>) -> Range<u64> {
+        if self.rates.is_empty() {
+            rounds
+        } else {
+            rates::samples(Some(self.rates[self.index(x, y)]), &rounds)
+        }
+    }
+
+    /// Number of samples that all its pixels get together.
+    pub fn sample_count(&self) -> u64 {
+        count_samples(self.rect, &self.rates, &self.rounds)
+    }
+
+    #[inline(always)]
+    fn index(&self, x: u32, y: u32) -> usize {
+        (y - self.rect.y) as usize * self.rect.width as usize + (x - self.rect.x) as usize
     }
 
     /// Adds a sample to pixel (`x`, `y`) of the film, which must lie in [`rect`](Self::rect). One that is not
     /// finite, or too large, is only counted as rejected: the pixel's estimates are those of its other samples.
     pub fn add(&mut self, x: u32, y: u32, sample: &Sample) {
         debug_assert!(x - self.rect.x < self.rect.width);
-        let index = (y - self.rect.y) as usize * self.rect.width as usize + (x - self.rect.x) as usize;
-        self.sums.add(index, sample, self.layers);
+        self.sums.add(self.index(x, y), sample, self.layers);
     }
+}
+
+impl Rect {
+    fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// Number of samples of some pixels in some rounds; `rates` is empty if they all get one a round.
+fn count_samples(rect: Rect, rates: &[u16], rounds: &Range<u64>) -> u64 {
+    let length = |range: Range<u64>| range.end.saturating_sub(range.start);
+    if rates.is_empty() {
+        return rect.pixels() as u64 * length(rounds.clone());
+    }
+    rates.iter().map(|&step| length(rates::samples(Some(step), rounds))).sum()
 }
 
 /// A pass that has begun: every tile's own progress.
@@ -79,7 +117,7 @@ pub(crate) struct OpenPass {
 
 /// The sums of a picture.
 ///
-/// Memory per pixel: 132 bytes, and for each layer that is kept and has seen anything but zero 4 (object), 16 (depth),
+/// Memory per pixel: 132 bytes, and for each layer that is kept and has seen anything but zero 4 (object), 8 (effort), 16 (depth),
 /// 24 (albedo, normal) or 48 (emission, single, multiple, shadow catcher) more: 247 MB at 1280x720 for a cloud with all
 /// layers but emission. Once a sample was rejected, 4 bytes more count them.
 ///
@@ -93,6 +131,8 @@ pub struct Film {
     pub(crate) height: u32,
     pub(crate) layers: Layers,
     pub(crate) sums: Sums,
+    /// How many samples each pixel gets of a round; one, if there are none.
+    pub(crate) rates: Option<Rates>,
     pub(crate) complete: SampleRanges,
     pub(crate) open: Option<OpenPass>,
 }
@@ -115,6 +155,9 @@ pub enum SizeError {
     Memory(#[from] MemoryError),
 }
 
+/// So many rounds of samples at most fit a film whose pixels differ by [`Rates`], which are 5 at most.
+const MAX_ROUNDS: u64 = MAX_SAMPLES / 5;
+
 /// Number of pixels of a film of this size.
 pub(crate) fn pixel_count(width: u32, height: u32) -> Result<usize, SizeError> {
     match u64::from(width) * u64::from(height) {
@@ -133,9 +176,25 @@ impl Film {
     pub fn new(width: u32, height: u32, layers: Layers) -> Result<Self, SizeError> {
         let count = pixel_count(width, height)?;
         let sums = Sums::default();
-        let film = Self { width, height, layers, sums, complete: SampleRanges::default(), open: None };
+        let complete = SampleRanges::default();
+        let film = Self { width, height, layers, sums, rates: None, complete, open: None };
         film.ask_for_rest(count)?;
         Ok(Self { sums: Sums::zero(count), ..film })
+    }
+
+    /// Gives the pixels different numbers of samples.
+    ///
+    /// # Panics
+    /// If the film holds samples, or the rates are of another size.
+    pub fn set_rates(&mut self, rates: Rates) {
+        assert!(self.complete.count() == 0 && self.open.is_none(), "the film holds samples");
+        assert!(rates.as_steps().len() == self.sums.pixels.len(), "the rates are those of another film");
+        self.rates = Some(rates);
+    }
+
+    /// How many samples each pixel gets for one of the others, if that differs.
+    pub fn rates(&self) -> Option<&Rates> {
+        self.rates.as_ref()
     }
 
     /// Asks for the memory that is not taken yet, of layers that have seen nothing so far and of the files that will be
@@ -199,7 +258,7 @@ impl Film {
         (y / TILE_EDGE) as usize * columns + (x / TILE_EDGE) as usize
     }
 
-    /// Samples that every pixel holds.
+    /// Rounds of samples that the film holds: without [`Rates`] the samples of every pixel.
     pub fn complete(&self) -> &SampleRanges {
         &self.complete
     }
@@ -209,15 +268,46 @@ impl Film {
         self.open.as_ref().map(|pass| pass.start)
     }
 
-    /// The next sample that tile number `tile` needs in the open pass.
-    pub fn next_sample(&self, tile: usize) -> Option<u64> {
+    /// The next round that tile number `tile` needs in the open pass.
+    pub fn next_round(&self, tile: usize) -> Option<u64> {
         self.open.as_ref().map(|pass| pass.start + pass.done[tile])
+    }
+
+    /// An empty tile for the rounds that tile number `tile` needs in the open pass before round `end`; `None` if it
+    /// needs none.
+    pub fn open_tile(&self, tile: usize, end: u64) -> Option<FilmTile> {
+        let rounds = self.next_round(tile)?..end;
+        let rect = self.tile_rect(tile);
+        (!rounds.is_empty())
+            .then(|| FilmTile { rates: self.rates_of(rect), ..FilmTile::new(rect, rounds, self.layers) })
+    }
+
+    /// Number of samples that [`open_tile`](Self::open_tile) asks for.
+    pub fn lacking(&self, tile: usize, end: u64) -> u64 {
+        let rect = self.tile_rect(tile);
+        self.next_round(tile).map_or(0, |start| count_samples(rect, &self.rates_of(rect), &(start..end)))
+    }
+
+    /// Rates of some pixels, row by row; none if they do not differ.
+    fn rates_of(&self, rect: Rect) -> Vec<u16> {
+        let Some(rates) = &self.rates else { return Vec::new() };
+        let rows = (rect.y..rect.y + rect.height).map(|y| self.index(rect.x, y));
+        rows.flat_map(|start| rates.as_steps()[start..start + rect.width as usize].iter().copied()).collect()
     }
 
     /// Number of samples that pixel (`x`, `y`) holds, those among them that were rejected.
     pub fn sample_count(&self, x: u32, y: u32) -> u64 {
-        let extra = self.open.as_ref().map_or(0, |pass| pass.done[self.tile_at(x, y)]);
-        self.complete.count() + extra
+        let open = self.open.as_ref().map(|pass| pass.start..pass.start + pass.done[self.tile_at(x, y)]);
+        let step = self.rates.as_ref().map(|rates| rates.as_steps()[self.index(x, y)]);
+        let rounds = self.complete.as_slice().iter().chain(&open);
+        rounds.map(|rounds| rates::samples(step, rounds)).map(|samples| samples.end - samples.start).sum()
+    }
+
+    /// Number of samples that the pixel with the fewest holds in the rounds that are complete.
+    pub fn least_sample_count(&self) -> u64 {
+        let step = self.rates.as_ref().and_then(|rates| rates.as_steps().iter().copied().min());
+        let samples = self.complete.as_slice().iter().map(|rounds| rates::samples(step, rounds));
+        samples.map(|samples| samples.end - samples.start).sum()
     }
 
     /// Begins a pass with sample number `start`, or continues the one that begins there.
@@ -240,10 +330,11 @@ impl Film {
     pub fn merge_tile(&mut self, tile: &FilmTile) {
         let number = self.tile_at(tile.rect.x, tile.rect.y);
         assert!(self.tile_rect(number) == tile.rect, "{:?} is no tile of the film", tile.rect);
-        let next = self.next_sample(number);
-        assert!(next == Some(tile.samples.start), "tile {number} needs {next:?}, not {:?}", tile.samples);
+        let next = self.next_round(number);
+        assert!(next == Some(tile.rounds.start), "tile {number} needs {next:?}, not {:?}", tile.rounds);
+        assert!(self.rates_of(tile.rect) == tile.rates, "tile {number} has other numbers of samples");
         if let Some(pass) = &mut self.open {
-            pass.done[number] += tile.samples.end - tile.samples.start;
+            pass.done[number] += tile.rounds.end - tile.rounds.start;
         }
         for row in 0..tile.rect.height {
             let start = (tile.rect.y + row) as usize * self.width as usize + tile.rect.x as usize;
@@ -252,7 +343,7 @@ impl Film {
         }
     }
 
-    /// Ends the pass: every tile must hold all samples from its start up to, not including, `end`.
+    /// Ends the pass: every tile must hold all rounds from its start up to, not including, `end`.
     pub fn complete_through(&mut self, end: u64) -> Result<(), RangeError> {
         let Some(pass) = &self.open else { return Ok(()) };
         let start = pass.start;
@@ -261,8 +352,19 @@ impl Film {
                 return Err(RangeError::Ragged { held: start + done, end });
             }
         }
-        self.complete.insert(start..end)?;
+        self.hold(&SampleRanges::try_from(vec![(start, end)])?)?;
         self.open = None;
+        Ok(())
+    }
+
+    /// Unchanged on error.
+    fn hold(&mut self, rounds: &SampleRanges) -> Result<(), RangeError> {
+        let mut complete = self.complete.clone();
+        complete.insert_all(rounds)?;
+        if self.rates.is_some() && complete.count() > MAX_ROUNDS {
+            return Err(RangeError::TooMany);
+        }
+        self.complete = complete;
         Ok(())
     }
 
@@ -279,7 +381,10 @@ impl Film {
         if self.layers != other.layers {
             return Err(MergeError::Layers);
         }
-        self.complete.insert_all(&other.complete)?;
+        if self.rates != other.rates {
+            return Err(MergeError::Rates);
+        }
+        self.hold(&other.complete)?;
         self.sums.add_run(0, &other.sums, 0, self.sums.pixels.len());
         Ok(())
     }
@@ -294,6 +399,9 @@ pub enum MergeError {
     /// The films keep different layers.
     #[error("they keep different layers; render both with the same")]
     Layers,
+    /// The pixels have different numbers of samples.
+    #[error("adaptive sampling gave their pixels different numbers of samples; render both in the same way")]
+    Rates,
     /// A film was interrupted in the middle of a pass.
     #[error("one was interrupted in the pass that begins at sample {0}; resume it to its end first")]
     Incomplete(u64),
@@ -323,12 +431,24 @@ mod tests {
         let radiance = [0, 1, 2].map(|c| single[c] + multiple[c] + spoilt);
         let (hit, object) = (!index.is_multiple_of(3), (albedo[1] * 5.0) as u32);
         let depth = albedo[0] * 7.0;
-        Sample { radiance, hit, depth, albedo, normal, object, catcher, emission: [0.0; 3], single, multiple }
+        Sample {
+            radiance,
+            hit,
+            depth,
+            albedo,
+            normal,
+            object,
+            catcher,
+            emission: [0.0; 3],
+            single,
+            multiple,
+            effort: 1,
+        }
     }
 
     fn render(film: &mut Film, tiles: impl Iterator<Item = usize>, end: u64) {
         for tile in tiles {
-            let Some(start) = film.next_sample(tile) else { panic!("no pass is open") };
+            let Some(start) = film.next_round(tile) else { panic!("no pass is open") };
             let rect = film.tile_rect(tile);
             let mut part = FilmTile::new(rect, start..end, film.layers());
             for index in start..end {

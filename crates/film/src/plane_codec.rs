@@ -96,6 +96,18 @@ fn word<const N: usize>(bytes: &[u8], index: usize) -> [u8; N] {
     std::array::from_fn(|i| bytes[index * N + i])
 }
 
+impl Record for u16 {
+    const BYTES: usize = 2;
+
+    fn put(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+
+    fn get(bytes: &[u8]) -> Self {
+        u16::from_le_bytes(word(bytes, 0))
+    }
+}
+
 impl Record for u32 {
     const BYTES: usize = 4;
 
@@ -105,6 +117,18 @@ impl Record for u32 {
 
     fn get(bytes: &[u8]) -> Self {
         u32::from_le_bytes(word(bytes, 0))
+    }
+}
+
+impl Record for u64 {
+    const BYTES: usize = 8;
+
+    fn put(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+
+    fn get(bytes: &[u8]) -> Self {
+        u64::from_le_bytes(word(bytes, 0))
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Sample {
     pub single: [f32; 3],
     /// Light scattered more than once by media.
     pub multiple: [f32; 3],
+    /// Random numbers that it took: how long it was under way, in a unit that does not depend on the machine.
+    pub effort: u32,
 }
 
 impl Sample {
@@ -69,10 +71,13 @@ pub struct Layers {
     /// alpha too.
     #[serde(default)]
     pub shadow_catcher: bool,
+    /// Mean number of random numbers that a sample took, `Effort`.
+    #[serde(default)]
+    pub effort: bool,
 }
 
 impl Layers {
-    /// Everything.
+    /// Everything that can be seen: all but the effort.
     pub const ALL: Self = Self::each(true);
     /// Only radiance, its error and coverage.
     pub const NONE: Self = Self::each(false);
@@ -87,6 +92,7 @@ impl Layers {
             normal: keep,
             object_id: keep,
             shadow_catcher: keep,
+            effort: false,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The exact sums behind the pixels of a film or of one of its tiles.
 //!
 //! Per pixel: 132 bytes for Σx and Σx² of red, green, blue, the count of camera paths that met anything and the greatest
-//! luminance of a sample, and, per layer that is kept and has seen anything but zero, 4 bytes (object), 16 (depth), 24
+//! luminance of a sample, and, per layer that is kept and has seen anything but zero, 4 bytes (object), 8 (effort), 16 (depth), 24
 //! (albedo, normal) or 48 (emission, single, multiple, shadow catcher). A 1280x720 picture of a cloud with all layers
 //! (no emission) takes 247 MB, without layers 122 MB. If a sample was rejected, the counts of those take 4 bytes more.
 //!
@@ -66,6 +66,8 @@ pub struct Sums {
     pub object: Vec<u32>,
     /// What shadow catchers reflect.
     pub catcher: Vec<CatcherSums>,
+    /// Random numbers that the samples took.
+    pub effort: Vec<u64>,
     /// Σ emission; [`SUM_FRACTION_BITS`], as the next two.
     pub emission: Vec<[i128; 3]>,
     /// Σ light scattered once.
@@ -91,6 +93,7 @@ impl Sums {
             (layers.normal, size_of::<[u64; 3]>()),
             (layers.object_id, size_of::<u32>()),
             (layers.shadow_catcher, size_of::<CatcherSums>()),
+            (layers.effort, size_of::<u64>()),
         ];
         let pixel = planes.iter().filter(|(is_kept, _)| *is_kept).map(|(_, bytes)| bytes).sum::<usize>();
         count.saturating_mul(size_of::<PixelSums>() + size_of::<f32>() + pixel)
@@ -104,6 +107,7 @@ impl Sums {
             + size_of_val(&*self.normal)
             + size_of_val(&*self.object)
             + size_of_val(&*self.catcher)
+            + size_of_val(&*self.effort)
             + size_of_val(&*self.emission)
             + size_of_val(&*self.single)
             + size_of_val(&*self.multiple)
@@ -150,6 +154,10 @@ impl Sums {
             let light = sample.catcher.map(|x| to_fixed(x, SUM_FRACTION_BITS));
             plane(&mut self.catcher, count)[index].add(CatcherSums { light, rays: 1 });
         }
+        if layers.effort && sample.effort != 0 {
+            let effort = &mut plane(&mut self.effort, count)[index];
+            *effort = effort.wrapping_add(sample.effort.into());
+        }
         for (keep, light, sums) in [
             (layers.emission, sample.emission, &mut self.emission),
             (layers.single, sample.single, &mut self.single),
@@ -173,6 +181,7 @@ impl Sums {
         run.add(&mut self.normal, &other.normal, add_words);
         run.add(&mut self.object, &other.object, keep_greatest);
         run.add(&mut self.catcher, &other.catcher, CatcherSums::add);
+        run.add(&mut self.effort, &other.effort, |a, b| *a = a.wrapping_add(b));
         run.add(&mut self.emission, &other.emission, add_light);
         run.add(&mut self.single, &other.single, add_light);
         run.add(&mut self.multiple, &other.multiple, add_light);

@@ -8,6 +8,19 @@
 
 /// The odd constant nearest 2^64 / golden ratio: successive counters land far apart.
 pub(crate) const GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
+/// Its inverse modulo 2^64.
+const INVERSE_GAMMA: u64 = inverse(GAMMA);
+
+/// The inverse of an odd number modulo 2^64: each step of Newton's method doubles the number of right bits.
+const fn inverse(odd: u64) -> u64 {
+    let mut inverse = odd;
+    let mut right_bits = 3;
+    while right_bits < u64::BITS {
+        inverse = inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse)));
+        right_bits *= 2;
+    }
+    inverse
+}
 
 #[inline(always)]
 pub(crate) fn mix(mut z: u64) -> u64 {
@@ -29,6 +42,12 @@ impl Random {
     pub fn new(seed: u64, pixel: u64, sample: u64) -> Random {
         let key = mix(mix(mix(seed.wrapping_add(GAMMA)) ^ pixel.wrapping_mul(GAMMA)).wrapping_add(sample));
         Random { state: mix(key) }
+    }
+
+    /// How many numbers were drawn from these since they were as `earlier` is.
+    #[inline(always)]
+    pub fn draws_since(&self, earlier: &Random) -> u64 {
+        self.state.wrapping_sub(earlier.state).wrapping_mul(INVERSE_GAMMA)
     }
 
     /// 64 uniform bits.
@@ -84,6 +103,18 @@ impl Random {
 #[cfg(test)]
 mod tests {
     use super::Random;
+
+    #[test]
+    fn draws_are_counted_whatever_is_drawn() {
+        for seed in 0..100 {
+            let begun = Random::new(seed, 2, 3);
+            let mut random = begun;
+            for _ in 0..seed {
+                random.f32x3();
+            }
+            assert_eq!(random.draws_since(&begun), seed);
+        }
+    }
 
     #[test]
     fn draws_depend_on_seed_pixel_and_sample() {

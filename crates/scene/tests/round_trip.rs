@@ -111,13 +111,14 @@ fn film_and_render() -> impl Strategy<Value = (FilmDescription, RenderDescriptio
     );
     let integrator = prop_oneof![Just(Integrator::Fast), Just(Integrator::Reference)];
     let sampler = prop_oneof![Just(Sampler::Independent), Just(Sampler::Sobol)];
-    let render = (1_u32.., any::<u32>(), of(any::<u32>()), integrator, sampler).prop_map(
-        |(spp, seed, max_depth, integrator, sampler)| RenderDescription {
+    let render = (1_u32.., any::<u32>(), of(any::<u32>()), integrator, sampler, any::<bool>()).prop_map(
+        |(spp, seed, max_depth, integrator, sampler, adaptive)| RenderDescription {
             spp,
             seed,
             max_depth,
             integrator,
             sampler,
+            adaptive,
             mode: ColourMode::Spectral,
         },
     );

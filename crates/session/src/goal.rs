@@ -112,7 +112,7 @@ impl Plan {
 
     fn error_is_reached(&self, pictures: &[Accumulation]) -> bool {
         let is_below = |film: &Film, goal: f64| {
-            film.complete().count() >= LEAST_SAMPLES_FOR_ERROR
+            film.least_sample_count() >= LEAST_SAMPLES_FOR_ERROR
                 && film.error_against(goal).is_some_and(|error| error <= goal)
         };
         self.error.is_some_and(|goal| pictures.iter().all(|picture| is_below(&picture.film, goal)))

@@ -35,6 +35,8 @@ pub struct Job {
     notes: Vec<String>,
     /// The file that the picture goes on from.
     resumed: Option<PathBuf>,
+    /// Whether the pixels of a picture get different numbers of samples.
+    is_adaptive: bool,
 }
 
 impl Job {
@@ -100,6 +102,7 @@ impl Job {
             pictures,
             notes,
             resumed: None,
+            is_adaptive: description.render.adaptive,
         })
     }
 
@@ -162,6 +165,11 @@ impl Job {
         let renderers: Vec<Renderer<'_>> =
             self.scenes.iter().map(|scene| Renderer::new(scene, self.options.integrator)).collect();
         let clock = Clock::start(first.metadata.seconds, first.film.complete().count());
+        if self.is_adaptive
+            && allot(&mut self.pictures, &renderers, &self.options, control)? == Outcome::Cancelled
+        {
+            return Ok(Outcome::Cancelled);
+        }
         // Only what was resumed can hold more than was asked for now.
         let resumed = self.resumed.as_deref().unwrap_or(Path::new("the picture"));
         while let Some(pass) = plan.next_pass(&self.pictures, &clock) {
@@ -187,6 +195,26 @@ impl Job {
         }
         Ok(Outcome::Complete)
     }
+}
+
+/// Gives the pixels of pictures without samples different numbers of them, as pilots tell.
+fn allot(
+    pictures: &mut [Accumulation],
+    renderers: &[Renderer<'_>],
+    options: &RenderOptions,
+    control: &Control,
+) -> Result<Outcome, SessionError> {
+    let is_empty = |film: &Film| film.complete().count() == 0 && film.open_start().is_none();
+    for (Accumulation { film, .. }, renderer) in pictures.iter_mut().zip(renderers) {
+        if film.rates().is_none() && is_empty(film) {
+            let rates = catch_unwind(AssertUnwindSafe(|| renderer.rates(film, options, control)));
+            match rates.map_err(|_| SessionError::Panicked)?? {
+                Some(rates) => film.set_rates(rates),
+                None => return Ok(Outcome::Cancelled),
+            }
+        }
+    }
+    Ok(Outcome::Complete)
 }
 
 /// Whether all `outputs` are there already: whole, and of this scene, made in this way, with the samples of the plan.

@@ -85,11 +85,12 @@ fn options(description: &SceneDescription, estimators: Estimators) -> String {
         // Readers of the picture should know as well.
         Sampler::Sobol => " sampler=sobol standard-errors=upper-estimates",
     };
+    let adaptive = if description.render.adaptive { " adaptive=yes" } else { "" };
     let distance = estimators.distance.map(|sampler| format!(" distance={}", sampler.name()));
     let transmittance =
         estimators.transmittance.map(|estimator| format!(" transmittance={}", estimator.name()));
     let estimators: String = [distance, transmittance].into_iter().flatten().collect();
-    format!("integrator={integrator}{sampler}{estimators}")
+    format!("integrator={integrator}{sampler}{adaptive}{estimators}")
 }
 
 /// The layers that the scene asks for; if it does not say, those that are about something in it. Shadow catchers always
@@ -107,6 +108,7 @@ fn layers(description: &SceneDescription) -> Layers {
         multiple: wanted(Layer::Multiple),
         normal: of_surfaces(Layer::Normal),
         object_id: of_surfaces(Layer::ObjectId),
+        effort: asked.is_some_and(|layers| layers.contains(&Layer::Effort)),
         shadow_catcher: has_catcher || asked.is_some_and(|layers| layers.contains(&Layer::ShadowCatcher)),
     }
 }

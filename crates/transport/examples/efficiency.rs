@@ -1,6 +1,7 @@
 //! How efficient the integrators are on the benchmark's scenes: 1 / ((relMSE − own noise of the reference) · seconds).
 //!
 //!     cargo run --release -p tyndall-transport --example efficiency -- [SCENE[:SAMPLES[*SEEDS]]]... [--integrator reference] [--sampler sobol]
+//!     [--adaptive]
 //!
 //! SCENE is a letter of `benchmarks/scenes`; without any, all are rendered, 16 samples a pixel, 2 seeds. The reference
 //! pictures by other renderers are looked for in `../shared/bench/references` beside the checkout. `seconds` is the
@@ -15,7 +16,7 @@ use tyndall_film::{Film, Layers};
 use tyndall_machine::seconds_on_cores;
 use tyndall_scene::description::{Integrator, Sampler};
 use tyndall_scene::{Scene, SceneDocument, build};
-use tyndall_transport::{Control, Estimators, RenderOptions, render_pass};
+use tyndall_transport::{Control, Estimators, RenderOptions, Renderer};
 
 /// Letter, scene file, relMSE of the reference picture by its own noise (its README).
 const SCENES: [(&str, &str, f64); 6] = [
@@ -41,6 +42,8 @@ fn main() {
         Some("sobol") => Sampler::Sobol,
         _ => Sampler::Independent,
     };
+    let is_adaptive = arguments.iter().any(|argument| argument == "--adaptive");
+    arguments.retain(|argument| argument != "--adaptive");
     if arguments.is_empty() {
         arguments = SCENES.iter().map(|(letter, ..)| (*letter).to_owned()).collect();
     }
@@ -54,7 +57,7 @@ fn main() {
         let Some((_, file, noise)) = SCENES.iter().find(|(known, ..)| *known == letter) else {
             panic!("{argument}: no scene of this letter");
         };
-        measure(letter, file, *noise, number(samples), number(seeds), (integrator, sampler));
+        measure(letter, file, *noise, number(samples), number(seeds), (integrator, sampler, is_adaptive));
     }
 }
 
@@ -64,7 +67,7 @@ fn measure(
     noise: f64,
     samples: u64,
     seeds: u64,
-    (integrator, sampler): (Integrator, Sampler),
+    (integrator, sampler, is_adaptive): (Integrator, Sampler, bool),
 ) {
     let benchmarks = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benchmarks");
     let references = benchmarks.join("../../shared/bench/references");
@@ -76,7 +79,7 @@ fn measure(
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let options = RenderOptions { integrator, sampler, seed, threads, estimators: Estimators::default() };
         let (start, cpu_start) = (Instant::now(), seconds_on_cores());
-        let film = render(&scene, samples, &options);
+        let film = render(&scene, samples, &options, is_adaptive);
         seconds += start.elapsed().as_secs_f64();
         cpu += cpu_start
             .zip(seconds_on_cores())
@@ -109,11 +112,16 @@ fn read(path: &Path) -> Scene {
     build(&description, document.folder()).expect("the scene can be built").scene
 }
 
-fn render(scene: &Scene, samples: u64, options: &RenderOptions) -> Film {
+fn render(scene: &Scene, samples: u64, options: &RenderOptions, is_adaptive: bool) -> Film {
     let [width, height] = scene.resolution;
     let mut film = Film::new(width, height, Layers::ALL).expect("the picture is small");
+    let (renderer, control) = (Renderer::new(scene, options.integrator), Control::default());
+    if is_adaptive {
+        let rates = renderer.rates(&film, options, &control).expect("the picture is small");
+        film.set_rates(rates.expect("nobody cancels"));
+    }
     film.open_range(0).expect("an empty film holds no samples");
-    render_pass(scene, &mut film, samples, options, &Control::default());
+    renderer.render_pass(&mut film, samples, options, &control);
     film.complete_through(samples).expect("the pass was not cancelled");
     film
 }

@@ -19,6 +19,7 @@ mod first_draws;
 mod found_light;
 mod measure;
 mod path_layers;
+mod pilot;
 mod properties;
 mod reference;
 mod render;

@@ -3,6 +3,7 @@
 //! Which thread renders which block, and in which order, changes nothing: every path has random numbers of its own
 //! and the film adds exactly.
 
+use std::cmp::Reverse;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use tyndall_film::{Film, FilmTile, Sample, TILE_EDGE};
@@ -101,7 +102,7 @@ impl<'a> Renderer<'a> {
         control: &Control,
     ) -> Outcome {
         let scene = self.scene;
-        let blocks = shares(blocks(film), film, end, options.threads);
+        let blocks = shares(blocks(film, end), film, end, options.threads);
         let next_block = AtomicUsize::new(0);
         let film = Mutex::new(film);
         let work = || {
@@ -123,7 +124,7 @@ impl<'a> Renderer<'a> {
                     }
                 };
                 if complete {
-                    counters::count(Event::Path, tiles.iter().map(sample_count).sum());
+                    counters::count(Event::Path, tiles.iter().map(FilmTile::sample_count).sum());
                 }
                 control.counters.collect();
                 if !complete {
@@ -132,7 +133,7 @@ impl<'a> Renderer<'a> {
                 let mut film = lock(&film);
                 for tile in &tiles {
                     film.merge_tile(tile);
-                    control.samples.fetch_add(sample_count(tile), Ordering::Relaxed);
+                    control.samples.fetch_add(tile.sample_count(), Ordering::Relaxed);
                 }
             }
         };
@@ -173,8 +174,13 @@ fn lock<'a, 'f>(film: &'a Mutex<&'f mut Film>) -> std::sync::MutexGuard<'a, &'f 
     film.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// Numbers of the film's tiles, by block.
-fn blocks(film: &Film) -> Vec<Vec<usize>> {
+/// Number of samples that some tiles still need.
+fn lacking(film: &Film, tiles: &[usize], end: u64) -> u64 {
+    tiles.iter().map(|&tile| film.lacking(tile, end)).sum()
+}
+
+/// Numbers of the film's tiles, by block; where pixels have different numbers of samples, those first that take longest.
+fn blocks(film: &Film, end: u64) -> Vec<Vec<usize>> {
     let columns = film.width().div_ceil(TILE_EDGE);
     let block_columns = columns.div_ceil(BLOCK_TILES) as usize;
     let block_rows = film.height().div_ceil(TILE_EDGE * BLOCK_TILES) as usize;
@@ -184,13 +190,16 @@ fn blocks(film: &Film) -> Vec<Vec<usize>> {
         let along = |pixels: u32| (pixels / (TILE_EDGE * BLOCK_TILES)) as usize;
         blocks[along(rect.y) * block_columns + along(rect.x)].push(tile);
     }
+    if film.rates().is_some() {
+        blocks.sort_by_cached_key(|block| Reverse(lacking(film, block, end)));
+    }
     blocks
 }
 
 /// Blocks joined to what a thread takes at once: [`PATHS_AT_ONCE`] and towards the end, where threads would have to wait
 /// for the last one, half a thread's part of what is left (guided self-scheduling, Polychronopoulos & Kuck 1987).
 fn shares(blocks: Vec<Vec<usize>>, film: &Film, end: u64, threads: usize) -> Vec<Vec<usize>> {
-    let paths = |block: &[usize]| -> u64 { block.iter().map(|&tile| lacking(film, tile, end)).sum() };
+    let paths = |block: &[usize]| lacking(film, block, end);
     let mut left: u64 = blocks.iter().map(|block| paths(block)).sum();
     let mut shares = Vec::new();
     let mut blocks = blocks.into_iter().peekable();
@@ -207,27 +216,15 @@ fn shares(blocks: Vec<Vec<usize>>, film: &Film, end: u64, threads: usize) -> Vec
     shares
 }
 
-/// Number of paths that a tile still needs.
-fn lacking(film: &Film, tile: usize, end: u64) -> u64 {
-    let start = film.next_sample(tile).expect("a pass is open");
-    let rect = film.tile_rect(tile);
-    u64::from(rect.width) * u64::from(rect.height) * end.saturating_sub(start)
+/// Empty tiles for the samples that the tiles of the share still need.
+fn open_tiles(film: &Film, share: &[usize], end: u64) -> Vec<FilmTile> {
+    share.iter().filter_map(|&tile| film.open_tile(tile, end)).collect()
 }
 
-/// Empty tiles for the samples that each tile of the block still needs.
-fn open_tiles(film: &Film, block: &[usize], end: u64) -> Vec<FilmTile> {
-    block
-        .iter()
-        .filter_map(|&tile| {
-            let start = film.next_sample(tile).expect("a pass is open");
-            (start < end).then(|| FilmTile::new(film.tile_rect(tile), start..end, film.layers()))
-        })
-        .collect()
-}
-
-fn sample_count(tile: &FilmTile) -> u64 {
-    let (rect, samples) = (tile.rect(), tile.samples());
-    u64::from(rect.width) * u64::from(rect.height) * (samples.end - samples.start)
+/// What a sample took whose random numbers are now those.
+#[inline(always)]
+pub(crate) fn effort(begun: &Random, now: &Random) -> u32 {
+    now.draws_since(begun).try_into().unwrap_or(u32::MAX)
 }
 
 /// Some tiles, one path after the other, each by `trace`; `false` if cancelled.
@@ -244,16 +241,18 @@ fn trace_tiles(
         for y in rect.y..rect.y + rect.height {
             for x in rect.x..rect.x + rect.width {
                 let pixel = u64::from(y) * u64::from(scene.resolution[0]) + u64::from(x);
-                for sample in tile.samples() {
+                for sample in tile.samples_of(x, y, tile.rounds()) {
                     if cancel.load(Ordering::Relaxed) {
                         return false;
                     }
-                    let mut random = Random::new(options.seed, pixel, sample);
+                    let begun = Random::new(options.seed, pixel, sample);
+                    let mut random = begun;
                     let draws = FirstDraws::new(options.sampler, options.seed, pixel, sample);
                     let film_u = draws.film(&mut random);
                     let lens_u = draws.lens(&mut random);
                     let ray = scene.camera.ray([x, y], film_u, lens_u);
-                    tile.add(x, y, &trace(ray, &mut random));
+                    let sample = trace(ray, &mut random);
+                    tile.add(x, y, &Sample { effort: effort(&begun, &random), ..sample });
                 }
             }
         }

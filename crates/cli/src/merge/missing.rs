@@ -59,6 +59,9 @@ fn options(made: &Provenance) -> String {
             // Writing to a string cannot fail.
             let _ = write!(options, " --{name} {value}");
         }
+        if option == "adaptive=yes" {
+            options.push_str(" --adaptive");
+        }
     }
     options
 }

@@ -22,7 +22,7 @@ fn metadata() -> ImageMetadata {
 }
 
 fn rendered(samples: Range<u64>, tiles: Range<usize>) -> Film {
-    let mut film = Film::new(40, 17, Layers::ALL).unwrap();
+    let mut film = Film::new(40, 17, Layers { effort: true, ..Layers::ALL }).unwrap();
     film.open_range(samples.start).unwrap();
     for number in tiles {
         let rect = film.tile_rect(number);
@@ -36,7 +36,15 @@ fn rendered(samples: Range<u64>, tiles: Range<usize>) -> Film {
                     let single = radiance.map(|r| r * 0.5);
                     let (normal, object, catcher) = ([u * 0.1, -0.1 * u, 0.5], u as u32 % 5, [u * 0.3, u]);
                     let hit = (index + u64::from(x)).is_multiple_of(2);
-                    let met = Sample { hit, depth: u, normal, object, catcher, ..Sample::default() };
+                    let met = Sample {
+                        hit,
+                        effort: object,
+                        depth: u,
+                        normal,
+                        object,
+                        catcher,
+                        ..Sample::default()
+                    };
                     tile.add(x, y, &Sample { radiance, single, ..met });
                 }
             }
@@ -90,7 +98,7 @@ fn an_interrupted_film_comes_back_with_the_progress_of_each_tile() {
     let read =
         Accumulation::decode(&bytes_of(&Accumulation { film: film.clone(), metadata: metadata() })).unwrap();
     assert_eq!(read.film, film);
-    assert_eq!((read.film.next_sample(0), read.film.next_sample(3)), (Some(5), Some(8)));
+    assert_eq!((read.film.next_round(0), read.film.next_round(3)), (Some(5), Some(8)));
 }
 
 #[test]
@@ -148,13 +156,42 @@ fn files_of_other_versions_are_refused_with_their_version() {
 }
 
 #[test]
+fn pixels_keep_their_own_numbers_of_samples() {
+    let adaptive = |step: u16| {
+        let rates = Rates::from_steps((0..40 * 17).map(|i| if i % 40 < 20 { 4096 } else { step }).collect());
+        let mut film = Film::new(40, 17, Layers::NONE).unwrap();
+        film.set_rates(rates.unwrap());
+        film.open_range(0).unwrap();
+        for number in 0..film.tile_count() {
+            film.merge_tile(&film.open_tile(number, 10).unwrap());
+        }
+        film.complete_through(10).unwrap();
+        Accumulation { film, metadata: metadata() }
+    };
+    let (saved, other) = (adaptive(8192), adaptive(2048));
+    let mut read = Accumulation::decode(&bytes_of(&saved)).unwrap();
+    assert!(read == saved && read != other);
+    assert_eq!([0, 39].map(|x| read.film.sample_count(x, 16)), [10, 18]);
+    assert_eq!([0, 39].map(|x| other.film.sample_count(x, 16)), [10, 6]);
+    let error = read.merge(Path::new("a.acc"), &other, Path::new("b.acc")).unwrap_err().to_string();
+    assert!(error.contains("both hold"), "{error}");
+    let mut later = other.clone();
+    later.film.complete = "10..20".parse().unwrap();
+    let error = read.merge(Path::new("a.acc"), &later, Path::new("b.acc")).unwrap_err().to_string();
+    assert!(error.contains("adaptive sampling"), "{error}");
+    let wrong =
+        Accumulation { film: Film { rates: Some(Rates::unchecked(vec![0; 680])), ..saved.film }, ..saved };
+    assert!(Accumulation::decode(&bytes_of(&wrong)).unwrap_err().contains("no rate"));
+}
+
+#[test]
 fn planes_that_are_damaged_are_named() {
     let good = bytes_of(&complete(0..1));
     for (from, to, words) in [
         (r#""object","catcher""#, r#""catcher","object""#, "bad plane"),
         (r#""normal","object""#, r#""normal","normal""#, "Normal: it occurs twice"),
-        (r#","catcher""#, "", "bytes too many"),
-        (r#","catcher""#, r#","catchers""#, "bad header"),
+        (r#""catcher","effort""#, r#""catcher""#, "bytes too many"),
+        (r#""catcher","effort""#, r#""catcher","efforts""#, "bad header"),
     ] {
         let error = Accumulation::decode(&with_header(good.clone(), from, to)).unwrap_err();
         assert!(error.contains(words) && !error.contains('\n'), "{error}");

@@ -86,6 +86,8 @@ pub enum Layer {
     ObjectId,
     /// Opacity of the shadows that fall on shadow catchers.
     ShadowCatcher,
+    /// Random numbers that a sample took, on average: where the time goes. Only kept if asked for.
+    Effort,
 }
 
 /// How the picture is rendered.
@@ -105,6 +107,10 @@ pub struct RenderDescription {
     /// How the first random numbers of paths are drawn.
     #[serde(skip_serializing_if = "super::is_default")]
     pub sampler: Sampler,
+    /// Whether pixels get different numbers of samples, `spp` on average: more where the picture is noisy, and where they cost
+    /// little. A pilot of four samples a pixel decides it, which are no part of the picture.
+    #[serde(skip_serializing_if = "super::is_default")]
+    pub adaptive: bool,
     /// What colours are computed with.
     #[serde(skip_serializing_if = "super::is_default")]
     pub mode: ColourMode,
@@ -129,6 +135,7 @@ impl Default for RenderDescription {
             max_depth: None,
             integrator: Integrator::Fast,
             sampler: Sampler::Independent,
+            adaptive: false,
             mode: ColourMode::Rgb,
         }
     }

@@ -38,8 +38,8 @@ pub const BASE_SCENES: &[(&str, &str)] = &[
     (
         "film",
         r#"
-        film = { resolution = [5, 4], crop = [1, 1, 3, 2], exposure = 1, layers = ["depth", "albedo", "emission", "single", "multiple", "normal", "object_id", "shadow_catcher"], output = "rgb" }
-        render = { spp = 2, seed = 1, max_depth = 5, integrator = "fast", sampler = "sobol", mode = "rgb" }
+        film = { resolution = [5, 4], crop = [1, 1, 3, 2], exposure = 1, layers = ["depth", "albedo", "emission", "single", "multiple", "normal", "object_id", "shadow_catcher", "effort"], output = "rgb" }
+        render = { spp = 2, seed = 1, max_depth = 5, integrator = "fast", sampler = "sobol", adaptive = true, mode = "rgb" }
         volume = [{ sphere = { center = [0, 0, 0], radius = 1 }, mu_t = 1, albedo = 0.5 }]
     "#,
     ),

@@ -34,7 +34,7 @@ use crate::emission::{path_weight, weighted_emission_along};
 use crate::first_draws::FirstDraws;
 use crate::found_light;
 use crate::path_layers::FirstMet;
-use crate::render::RenderOptions;
+use crate::render::{RenderOptions, effort};
 use crate::roulette::survival;
 use crate::way::{Span, is_plain};
 use crate::wide;
@@ -236,7 +236,8 @@ impl<'a> Engine<'a> {
     fn start(&mut self, slot: usize, pixel: Pixel, sample: u64) -> Next {
         let number = u64::from(pixel.y) * self.film_width + u64::from(pixel.x);
         let RenderOptions { sampler, seed, .. } = *self.options;
-        let mut random = Random::new(seed, number, sample);
+        let begun = Random::new(seed, number, sample);
+        let mut random = begun;
         let draws = FirstDraws::new(sampler, seed, number, sample);
         let film_u = draws.film(&mut random);
         let lens_u = if self.has_lens { draws.lens(&mut random) } else { [0.5; 2] };
@@ -244,6 +245,7 @@ impl<'a> Engine<'a> {
         self.rays.random[slot] = random;
         self.paths[slot] = Path {
             pixel,
+            begun,
             draws,
             position: (ray.origin - self.scene.centre).as_vec3(),
             direction: ray.direction.as_vec3(),
@@ -486,6 +488,7 @@ impl<'a> Engine<'a> {
             emission: path.emission.to_array(),
             single: path.single.to_array(),
             multiple: path.multiple.to_array(),
+            effort: effort(&path.begun, &self.rays.random[slot]),
             ..Sample::default()
         };
         let sample = FirstMet::describe(path.first, sample);

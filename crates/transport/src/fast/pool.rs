@@ -103,6 +103,8 @@ impl Rays {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Path {
     pub pixel: Pixel,
+    /// The path's random numbers before the first.
+    pub begun: Random,
     /// Numbers up to its first turn.
     pub draws: FirstDraws,
     /// Start of the current ray.

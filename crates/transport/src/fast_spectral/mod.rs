@@ -36,7 +36,7 @@ use self::scene::CHANNELS;
 use self::vertex::List;
 use crate::fast::{Pixel, Work};
 use crate::first_draws::FirstDraws;
-use crate::render::RenderOptions;
+use crate::render::{RenderOptions, effort};
 use crate::wide;
 
 pub(crate) use self::scene::FastSpectralScene;
@@ -145,7 +145,8 @@ impl<'a> Engine<'a> {
         lanes.span[slot] = starting.opacity[channel] / STRATA as f32;
         lanes.floor[slot] = starting.transmittance[channel] + stratum as f32 * lanes.span[slot];
         lanes.scatterings[slot] = 0;
-        lanes.random[slot] = Random::new(starting.random.bits(), starting.part as u64, 0);
+        lanes.begun[slot] = Random::new(starting.random.bits(), starting.part as u64, 0);
+        lanes.random[slot] = lanes.begun[slot];
         lanes.active[slot] = 1;
         lanes.part[slot] = (starting.number, starting.part as u16);
         starting.skip_to(starting.part + 1);
@@ -215,6 +216,8 @@ impl<'a> Engine<'a> {
         if sample.witness == part {
             sample.depth += f64::from(lanes.first[slot]);
         }
+        let effort = effort(&lanes.begun[slot], &lanes.random[slot]);
+        sample.effort = sample.effort.saturating_add(effort);
         sample.missing -= 1;
         if sample.missing == 0 {
             let sample = self.open.close(number);
@@ -233,6 +236,7 @@ impl<'a> Engine<'a> {
             albedo: self.scene.albedo,
             single: single.to_array(),
             multiple: multiple.to_array(),
+            effort: sample.effort,
             ..Sample::default()
         };
         let pixel = sample.pixel;

@@ -43,6 +43,8 @@ pub(super) struct Lanes {
     pub single: [Group; CHANNELS],
     pub multiple: [Group; CHANNELS],
     pub random: [Random; POOL],
+    /// What those were before the first.
+    pub begun: [Random; POOL],
     /// 1 for a place with a path.
     pub active: [u32; POOL],
     /// Number of the sample among those that are open, and of the path among its parts.
@@ -66,6 +68,7 @@ impl Lanes {
             single: [zero; CHANNELS],
             multiple: [zero; CHANNELS],
             random: [Random::default(); POOL],
+            begun: [Random::default(); POOL],
             active: [0; POOL],
             part: [(0, 0); POOL],
         })
@@ -89,6 +92,8 @@ pub(super) struct OpenSample {
     pub hit: bool,
     /// Distance to the medium, and then to the first collision of that path.
     pub depth: f64,
+    /// Random numbers that its paths took.
+    pub effort: u32,
 }
 
 /// Places of a list of open samples.

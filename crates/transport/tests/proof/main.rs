@@ -3,6 +3,7 @@
 //! Every test is a statistical one with fixed seeds, so that it gives the same answer each time; the level at which it
 //! would fail by chance for other seeds (see [`fresh`]) is stated with each. Where both integrators can be asked, both are.
 
+mod adaptive;
 mod agreement;
 mod chromatic;
 mod effort;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use tyndall_film::{Film, Layers};
 use tyndall_scene::Scene;
 use tyndall_scene::description::{Integrator, Sampler};
-use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, render_pass};
+use tyndall_transport::{Control, Estimators, Outcome, RenderOptions, Renderer, render_pass};
 
 use crate::fresh;
 
@@ -29,10 +29,23 @@ pub fn render_with(scene: &Scene, options: RenderOptions, samples: Range<u64>) -
 
 /// The same by the very seed of the options, whichever is asked for.
 pub fn render_of_seed(scene: &Scene, options: RenderOptions, samples: Range<u64>) -> Film {
-    let [width, height] = scene.resolution;
-    let mut film = Film::new(width, height, Layers::ALL).expect("test pictures are small");
+    let mut film = empty(scene);
     add_pass_of_seed(scene, &mut film, samples, options);
     assert_eq!(film.rejected(), 0, "{options:?} made samples that are no numbers");
+    film
+}
+
+fn empty(scene: &Scene) -> Film {
+    let [width, height] = scene.resolution;
+    Film::new(width, height, Layers::ALL).expect("test pictures are small")
+}
+
+/// A film without samples whose pixels get as many as a pilot tells.
+pub fn empty_adaptive(scene: &Scene, options: RenderOptions) -> Film {
+    let mut film = empty(scene);
+    let renderer = Renderer::new(scene, options.integrator);
+    let rates = renderer.rates(&film, &with_fresh_seed(options), &Control::default());
+    film.set_rates(rates.expect("test pictures are small").expect("nobody cancels"));
     film
 }
 

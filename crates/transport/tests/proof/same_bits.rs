@@ -8,7 +8,7 @@ use tyndall_scene::description::Sampler;
 use tyndall_scene::{ChromaticMedium, Scene};
 use tyndall_transport::RenderOptions;
 
-use crate::rendering::{BOTH, add_pass, options};
+use crate::rendering::{BOTH, add_pass, empty_adaptive, options};
 use crate::scenes::scene;
 
 /// Two overlapping volumes, a grid and a shape, under lights of two kinds; six blocks of tiles, some of them cut.
@@ -46,11 +46,14 @@ fn threads_and_passes_change_no_bit() {
     let mu_t = DVec3::new(1.0, 2.0, 8.0);
     chromatic.volumes[1].medium.chromatic = Some(Arc::new(ChromaticMedium { mu_t, phase_functions: None }));
     let all = BOTH.map(|integrator| (&grey, integrator)).into_iter().chain([(&chromatic, BOTH[0])]);
-    let samplers = [Sampler::Independent, Sampler::Sobol];
-    for ((scene, integrator), sampler) in all.flat_map(|one| samplers.map(|sampler| (one, sampler))) {
+    let ways = [(Sampler::Independent, false), (Sampler::Sobol, false), (Sampler::Sobol, true)];
+    for ((scene, integrator), (sampler, is_adaptive)) in all.flat_map(|one| ways.map(|way| (one, way))) {
         let film = |threads, passes: &[[u64; 2]]| {
-            let mut film = Film::new(150, 90, Layers::ALL).expect("a small picture");
             let options = RenderOptions { threads, sampler, ..options(integrator, 7) };
+            let mut film = match is_adaptive {
+                true => empty_adaptive(scene, options),
+                false => Film::new(150, 90, Layers::ALL).expect("a small picture"),
+            };
             for &[start, end] in passes {
                 add_pass(scene, &mut film, start..end, options);
             }

@@ -7,7 +7,7 @@
 
 use glam::{DVec3, Vec3};
 use std::sync::atomic::{AtomicBool, Ordering};
-use tyndall_film::FilmTile;
+use tyndall_film::{FilmTile, Sample};
 use tyndall_lanes::Random;
 use tyndall_scene::Ray;
 use tyndall_scene::surface::{LANES, RayGroup, Surfaces};
@@ -18,7 +18,7 @@ use super::{BRANCHES, FIRST, Homogeneous, LATER, Path, Reached};
 use crate::fast::{Pixel, Work};
 use crate::first_draws::FirstDraws;
 use crate::path_layers::PathLayers;
-use crate::render::RenderOptions;
+use crate::render::{RenderOptions, effort};
 use crate::wide;
 
 /// Paths in flight on a thread: whole groups of [`LANES`] and [`WAYS`].
@@ -40,6 +40,8 @@ pub(in crate::fast) struct Paths<'a> {
 struct Sampling {
     pixel: Pixel,
     random: Random,
+    /// What those were before the first.
+    begun: Random,
     draws: FirstDraws,
     layers: PathLayers<Vec3>,
     /// The camera's ray, and where it led.
@@ -81,7 +83,8 @@ impl wide::Task for Paths<'_> {
                     let pixel = sampling.pixel;
                     let layers = std::mem::take(&mut sampling.layers);
                     let sample = layers.into_sample(|colour| colour.as_dvec3());
-                    tiles[pixel.tile as usize].add(pixel.x, pixel.y, &sample);
+                    let effort = effort(&sampling.begun, &sampling.random);
+                    tiles[pixel.tile as usize].add(pixel.x, pixel.y, &Sample { effort, ..sample });
                     let Some((pixel, sample)) = work.next(tiles) else {
                         samplings.swap_remove(at);
                         break;
@@ -180,6 +183,7 @@ impl Sampling {
         Self {
             pixel: Pixel::default(),
             random: Random::default(),
+            begun: Random::default(),
             draws: FirstDraws::Independent,
             layers: PathLayers::default(),
             first: (path, way.clone()),
@@ -197,7 +201,8 @@ impl Homogeneous<'_> {
     fn start(&self, sampling: &mut Sampling, pixel: Pixel, sample: u64, options: &RenderOptions) {
         let scene = self.scene;
         let number = u64::from(pixel.y) * u64::from(scene.resolution[0]) + u64::from(pixel.x);
-        let mut random = Random::new(options.seed, number, sample);
+        let begun = Random::new(options.seed, number, sample);
+        let mut random = begun;
         let draws = FirstDraws::new(options.sampler, options.seed, number, sample);
         let film_u = draws.film(&mut random);
         let lens_u = draws.lens(&mut random);
@@ -224,7 +229,8 @@ impl Homogeneous<'_> {
         }
         sampling.first.0 = path;
         (sampling.is_under_way, sampling.branch) = (false, branch);
-        (sampling.pixel, sampling.random, sampling.draws) = (pixel, random, draws);
+        (sampling.pixel, sampling.draws) = (pixel, draws);
+        (sampling.begun, sampling.random) = (begun, random);
     }
 
     /// Turns the sample's path, or goes on with its next branch; `false` if there is none left.
