@@ -1,7 +1,8 @@
 """The renderers of the bench, each in the mode that was best for it among the unbiased ones, and how to run them once.
 
 Mitsuba's roulette, capped at 0.95, makes scene A heavy-tailed, and `volpathmis` biased: off there. Cycles renders by
-null scattering, pbrt-v4 by `volpath`, Tyndall with evener samples on B, C and D. `seconds` is the time of rendering alone: without reading, building and
+null scattering, pbrt-v4 by `volpath`, Tyndall with evener samples on B, C and D, and adaptive ones on B and D (Cycles' own
+adaptive sampling stops pixels by their own samples, which is biased). `seconds` is the time of rendering alone: without reading, building and
 compiling, but for Cycles, which prepares its octrees inside the call; `cpu_seconds` is that of all threads.
 """
 
@@ -23,7 +24,8 @@ class Tyndall:
 
     name, label = "tyndall", "Tyndall"
     samples = {"A": 16, "B": 64, "C": 64, "D": 64, "E": 64, "G": 16}
-    settings = {letter: ["--sampler", "sobol"] for letter in "BCD"}
+    sobol = ["--sampler", "sobol"]
+    settings = {"B": [*sobol, "--adaptive"], "C": sobol, "D": [*sobol, "--adaptive"]}
 
     def __init__(self, binary, threads, options=()):
         self.binary, self.threads, self.options = binary, threads, list(options)
