@@ -32,7 +32,7 @@ use crate::metadata::ImageMetadata;
 use crate::plane_codec::{decode_plane, encode_plane};
 use crate::provenance::Provenance;
 use crate::ranges::SampleRanges;
-use crate::rates::Rates;
+use crate::rates::{self, Rates};
 use crate::sample::Layers;
 use crate::sums::Sums;
 
@@ -277,7 +277,7 @@ impl Header {
             format!("the sums of {}x{} pixels", self.width, self.height)
         })
         .map_err(|error| error.to_string())?;
-        let (mut sums, mut rates) = (Sums::default(), Vec::new());
+        let (mut sums, mut steps) = (Sums::default(), Vec::new());
         for plane in &self.planes {
             match plane {
                 Plane::Pixels => decode_plane(blocks, &mut sums.pixels, count),
@@ -292,7 +292,7 @@ impl Header {
                 Plane::Object => decode_plane(blocks, &mut sums.object, count),
                 Plane::Catcher => decode_plane(blocks, &mut sums.catcher, count),
                 Plane::Effort => decode_plane(blocks, &mut sums.effort, count),
-                Plane::Rates => decode_plane(blocks, &mut rates, count),
+                Plane::Rates => decode_plane(blocks, &mut steps, count),
             }
             .map_err(|what| format!("has a bad plane {plane:?}: {what}"))?;
         }
@@ -302,15 +302,23 @@ impl Header {
         if !sums.largest.iter().all(|&luminance| (0.0..f32::INFINITY).contains(&luminance)) {
             return Err("has a bad plane Largest: it holds what is no luminance".into());
         }
-        let rates = (!rates.is_empty()).then(|| Rates::from_steps(rates)).transpose();
+        let rates = (!steps.is_empty()).then(|| Rates::from_steps(steps)).transpose();
+        let rates = rates.map_err(|what| format!("has a bad plane Rates: {what}"))?;
+        let open = self.open.as_ref().map(|open| self.open_pass(open)).transpose()?;
+        if rates.is_some() {
+            let most = |pass: &OpenPass| pass.start + pass.done.iter().copied().max().unwrap_or(0);
+            let mut held = self.samples.clone();
+            let held_all = open.as_ref().map_or(Ok(()), |pass| held.insert(pass.start..most(pass)));
+            held_all.and_then(|()| rates::check(&held)).map_err(|e| format!("has a bad header: {e}"))?;
+        }
         Ok(Film {
             width: self.width,
             height: self.height,
             layers: self.layers,
             sums,
-            rates: rates.map_err(|what| format!("has a bad plane Rates: {what}"))?,
+            rates,
             complete: self.samples.clone(),
-            open: self.open.as_ref().map(|open| self.open_pass(open)).transpose()?,
+            open,
         })
     }
 

@@ -10,7 +10,6 @@ use std::ops::Range;
 
 use tyndall_machine::memory::{self, MemoryError};
 
-use crate::fixed_point::MAX_SAMPLES;
 use crate::ranges::{RangeError, SampleRanges};
 use crate::rates::{self, Rates};
 use crate::sample::{Layers, Sample};
@@ -48,7 +47,8 @@ pub struct FilmTile {
 }
 
 impl FilmTile {
-    /// An empty tile for `samples` of every pixel of `rect`, which is one of [`Film::tile_rect`].
+    /// An empty tile for `samples` of every pixel of `rect`, which is one of [`Film::tile_rect`] of a film without [`Rates`];
+    /// [`Film::open_tile`] makes those of any film.
     pub fn new(rect: Rect, samples: Range<u64>, layers: Layers) -> Self {
         let sums = Sums::zero(rect.pixels());
         Self { rect, rounds: samples, rates: Vec::new(), layers, sums }
@@ -154,9 +154,6 @@ pub enum SizeError {
     #[error("{0}, such as a smaller resolution or fewer layers")]
     Memory(#[from] MemoryError),
 }
-
-/// So many rounds of samples at most fit a film whose pixels differ by [`Rates`], which are 5 at most.
-const MAX_ROUNDS: u64 = MAX_SAMPLES / 5;
 
 /// Number of pixels of a film of this size.
 pub(crate) fn pixel_count(width: u32, height: u32) -> Result<usize, SizeError> {
@@ -303,7 +300,8 @@ impl Film {
         rounds.map(|rounds| rates::samples(step, rounds)).map(|samples| samples.end - samples.start).sum()
     }
 
-    /// Number of samples that the pixel with the fewest holds in the rounds that are complete.
+    /// Number of samples that the pixel with the lowest rate holds in the rounds that are complete: no pixel has fewer, but for
+    /// one in each range of rounds.
     pub fn least_sample_count(&self) -> u64 {
         let step = self.rates.as_ref().and_then(|rates| rates.as_steps().iter().copied().min());
         let samples = self.complete.as_slice().iter().map(|rounds| rates::samples(step, rounds));
@@ -318,7 +316,11 @@ impl Film {
             None => {}
         }
         let next = start.checked_add(1).ok_or(RangeError::TooMany)?;
-        self.complete.clone().insert(start..next)?;
+        let mut held = self.complete.clone();
+        held.insert(start..next)?;
+        if self.rates.is_some() {
+            rates::check(&held)?;
+        }
         self.open = Some(OpenPass { start, done: vec![0; self.tile_count()] });
         Ok(())
     }
@@ -326,7 +328,7 @@ impl Film {
     /// Adds the samples of a tile, which must be those that the tile needs next.
     ///
     /// # Panics
-    /// If no pass is open, or the tile is none of the film's, or its samples do not follow those it holds.
+    /// If no pass is open, or the tile is none of the film's, or its rounds do not follow those it holds or have other rates.
     pub fn merge_tile(&mut self, tile: &FilmTile) {
         let number = self.tile_at(tile.rect.x, tile.rect.y);
         assert!(self.tile_rect(number) == tile.rect, "{:?} is no tile of the film", tile.rect);
@@ -361,8 +363,8 @@ impl Film {
     fn hold(&mut self, rounds: &SampleRanges) -> Result<(), RangeError> {
         let mut complete = self.complete.clone();
         complete.insert_all(rounds)?;
-        if self.rates.is_some() && complete.count() > MAX_ROUNDS {
-            return Err(RangeError::TooMany);
+        if self.rates.is_some() {
+            rates::check(&complete)?;
         }
         self.complete = complete;
         Ok(())

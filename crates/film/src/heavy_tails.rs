@@ -45,6 +45,10 @@ pub struct UnseenLight {
 /// Errors below this are taken as this where unseen light is to be told: less of it matters to nobody.
 pub(crate) const LEAST_STATED_ERROR: f64 = 0.01;
 
+/// Samples that an error estimate needs before it is believed: with fewer, pixels whose few samples happen to agree
+/// pass for converged.
+const LEAST_SAMPLES_FOR_ERROR: u64 = 16;
+
 /// Luminance of a pixel, with and without its largest sample.
 #[derive(Clone, Copy, Default)]
 struct Pixel {
@@ -88,6 +92,11 @@ impl Film {
         let median = self.median_relative_error()?;
         let bound = if median <= asked { self.unseen_light(asked).bound } else { 0.0 };
         Some(if bound > asked { bound } else { median })
+    }
+
+    /// The same once every pixel holds the 16 samples that it takes to believe it; `None` before that, too.
+    pub fn believed_error_against(&self, asked: f64) -> Option<f64> {
+        if self.least_sample_count() < LEAST_SAMPLES_FOR_ERROR { None } else { self.error_against(asked) }
     }
 
     /// The share that one sample has in the light of the whole picture; `None` if that is black. Where it is not small,

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use crate::fixed_point::MAX_SAMPLES;
+use crate::rates::MAX_ROUNDS;
 
 /// Disjoint, sorted ranges without gaps of zero width: [0,64) and [64,128) become [0,128).
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -35,6 +36,11 @@ pub enum RangeError {
     /// More samples than the sums have room for.
     #[error("more than {MAX_SAMPLES} samples a pixel do not fit one film; render fewer")]
     TooMany,
+    /// The same of a film whose pixels have different numbers of samples.
+    #[error(
+        "more than {MAX_ROUNDS} samples a pixel, or samples beyond number 2^60, do not fit one film with adaptive          sampling; render fewer"
+    )]
+    TooManyAdaptive,
 }
 
 impl SampleRanges {

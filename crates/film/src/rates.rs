@@ -3,7 +3,7 @@
 //! Pixel i, with rate r_i, holds after s rounds
 //!
 //! ```text
-//! n_i(s) = min(s, 2) + ⌊max(s − 2, 0) r_i⌋        mean of r_i = 1
+//! n_i(s) = min(s, 2) + ⌊max(s − 2, 0) r_i + ½⌋        mean of r_i = 1
 //! ```
 //!
 //! samples, so that every pixel has a standard error as early as without rates. In a given time Σ n_i c_i, with c_i the cost of a
@@ -16,11 +16,15 @@
 use std::ops::Range;
 
 use crate::film::Film;
+use crate::fixed_point::MAX_SAMPLES;
+use crate::ranges::{RangeError, SampleRanges};
 
 /// Rates are counts of this; a power of two, so that they are exact in floating point.
 const STEP: f64 = 1.0 / 4096.0;
 /// Bits of [`STEP`].
 const STEP_BITS: u32 = 12;
+/// Half a sample.
+const HALF: u128 = 1 << (STEP_BITS - 1);
 /// No pixel gets less than this: what the pilot has not met may be there.
 const LEAST: f64 = 0.25;
 /// No pixel gets more than this, but for what is left over when all get it that want it.
@@ -38,6 +42,17 @@ const BEGINNING: f64 = 10.0;
 /// Radiance below this share of the picture's mean is not asked to be as exact, relative to itself, as what is brighter.
 const DARK: f64 = 1.0;
 
+/// So many rounds of samples at most fit a film with rates, which are 5 at most.
+pub(crate) const MAX_ROUNDS: u64 = MAX_SAMPLES / 5;
+/// Rounds beyond this number have samples without numbers.
+const LAST_ROUND: u64 = 1 << 60;
+
+/// Whether the sums have room for so many samples of all pixels, and samples have numbers.
+pub(crate) fn check(rounds: &SampleRanges) -> Result<(), RangeError> {
+    let ends_late = rounds.as_slice().iter().any(|range| range.end > LAST_ROUND);
+    if ends_late || rounds.count() > MAX_ROUNDS { Err(RangeError::TooManyAdaptive) } else { Ok(()) }
+}
+
 /// A rate for each pixel, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rates(Vec<u16>);
@@ -46,7 +61,7 @@ impl Rates {
     /// Those by which a picture has the least mean relative variance, as far as a pilot of it tells; of a black one, or one
     /// without noise, 1 everywhere.
     pub fn of_pilot(pilot: &Film) -> Self {
-        Self(in_proportion(&wanted(pilot)).iter().map(|rate| (rate / STEP) as u16).collect())
+        Self(in_proportion(&wanted(pilot)).iter().map(|rate| (rate / STEP).round() as u16).collect())
     }
 
     /// Rates from a file.
@@ -78,8 +93,8 @@ pub(crate) fn samples(step: Option<u16>, rounds: &Range<u64>) -> Range<u64> {
 
 fn count(step: u16, rounds: u64) -> u64 {
     let even = rounds.min(EVEN_ROUNDS);
-    // Beyond 2^61 rounds, where it might not fit, it may as well start over.
-    even.wrapping_add(((u128::from(rounds - even) * u128::from(step)) >> STEP_BITS) as u64)
+    // Films take so few rounds that it fits.
+    even.wrapping_add(((u128::from(rounds - even) * u128::from(step) + HALF) >> STEP_BITS) as u64)
 }
 
 /// What the rates are to be in proportion to: the root of relative variance over cost, around each pixel.
@@ -94,7 +109,7 @@ fn wanted(pilot: &Film) -> Vec<f64> {
         costs.push([BEGINNING + pilot.effort(index, n)]);
     });
     let brightness = means.iter().flatten().map(|mean| mean.abs()).sum::<f64>() / (3 * means.len()) as f64;
-    let dark = (DARK * brightness).powi(2);
+    let dark = DARK * brightness * DARK * brightness;
     let [means, variances] = [means, variances].map(|values| around(&values, size));
     let relative = |mean: [f64; 3], variance: [f64; 3]| -> f64 {
         (0..3).map(|c| variance[c] / (mean[c] * mean[c] + dark)).filter(|v| v.is_finite()).sum()
@@ -134,7 +149,7 @@ fn in_proportion(wanted: &[f64]) -> Vec<f64> {
     // All of them are least at the one end, and all that are worth it greatest at the other.
     let (mut low, mut high) = (LEAST / most, GREATEST / (WORTH * most));
     for _ in 0..HALVINGS {
-        let middle = (low * high).sqrt();
+        let middle = low.sqrt() * high.sqrt();
         if mean(middle) < 1.0 { low = middle } else { high = middle }
     }
     // Where most is wanted nowhere, the greatest rates of the others leave samples over.
@@ -158,7 +173,8 @@ mod tests {
         assert!((mean(&rates) - 1.0).abs() < 1e-9, "{rates:?}");
         assert!((rates[1] / rates[0] - 2.0).abs() < 1e-9 && (rates[3] - LEAST).abs() < 1e-9, "{rates:?}");
         assert_eq!(in_proportion(&[0.0; 3]), [1.0; 3]);
-        assert!(in_proportion(&[3e-160; 3]).iter().all(|rate| (rate - 1.0).abs() < 1e-6));
+        let rates = in_proportion(&[3e-160, 6e-160]);
+        assert!((rates[1] / rates[0] - 2.0).abs() < 1e-9, "{rates:?}");
     }
 
     #[test]
@@ -170,7 +186,7 @@ mod tests {
 
     #[test]
     fn rounds_follow_each_other_and_begin_evenly() {
-        for step in [1024, 4096, 5000, 36_864] {
+        for step in [1024, 4096, 5000, 20_480] {
             assert_eq!(samples(Some(step), &(0..2)), 0..2);
             let mut next = 0;
             for round in 0..100 {
@@ -179,10 +195,9 @@ mod tests {
                 next = of_round.end;
             }
             let expected = 2.0 + 98.0 * f64::from(step) * STEP;
-            assert!((expected - 1.0..=expected).contains(&(next as f64)), "{step}: {next}");
+            assert!((next as f64 - expected).abs() <= 0.5, "{step}: {next}");
         }
         assert_eq!(samples(None, &(7..9)), 7..9);
-        samples(Some(36_864), &(u64::MAX - 1..u64::MAX));
     }
 
     /// Grey noise of this deviation about a mean, by pixel.
@@ -235,7 +250,7 @@ mod tests {
     #[test]
     fn rates_that_none_is_given_are_refused() {
         assert!(Rates::from_steps(vec![4096, 1024]).is_ok());
-        for wrong in [0, 1023, 40_000] {
+        for wrong in [0, 1023, 20_481] {
             assert!(Rates::from_steps(vec![4096, wrong]).is_err());
         }
     }

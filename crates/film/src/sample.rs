@@ -34,7 +34,8 @@ pub struct Sample {
     pub single: [f32; 3],
     /// Light scattered more than once by media.
     pub multiple: [f32; 3],
-    /// Random numbers that it took: how long it was under way, in a unit that does not depend on the machine.
+    /// Random numbers that its paths took, but for evenly spread ones: how long it was under way, in a unit that does not depend on
+    /// the machine, but on the integrator.
     pub effort: u32,
 }
 

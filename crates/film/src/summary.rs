@@ -20,9 +20,9 @@ pub struct Summary {
     pub width: u32,
     /// Rows of pixels.
     pub height: u32,
-    /// Ranges of sample indices that every pixel holds, `[[0, 64]]`.
+    /// Ranges of sample indices that every pixel holds, `[[0, 64]]`; of an adaptive picture those it would hold at a rate of 1.
     pub samples: SampleRanges,
-    /// Samples a pixel, the mean of all pixels (they differ only in an interrupted render).
+    /// Samples a pixel, the mean of all pixels (they differ in an interrupted render, and in an adaptive one).
     pub samples_per_pixel: f64,
     /// Time of rendering.
     pub seconds: f64,

@@ -11,7 +11,22 @@ const GREAT_SHARE: f64 = 0.05;
 pub fn warnings<'a>(films: impl IntoIterator<Item = &'a Film> + Clone) -> Vec<String> {
     let worst = films.clone().into_iter().filter_map(heavy_tail);
     let heavy_tail = worst.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, line)| line);
-    rejected_samples(films).into_iter().chain(heavy_tail).collect()
+    let empty = films.clone().into_iter().find_map(empty_pixels);
+    rejected_samples(films).into_iter().chain(empty).chain(heavy_tail).collect()
+}
+
+/// A part of an adaptive picture may hold samples of some pixels alone.
+fn empty_pixels(film: &Film) -> Option<String> {
+    if film.rates().is_none() || film.complete().count() == 0 {
+        return None;
+    }
+    let pixels = (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
+    let empty = pixels.filter(|&(x, y)| film.sample_count(x, y) == 0).count();
+    (empty > 0).then(|| {
+        format!(
+            "{empty} pixels have no sample in this part of an adaptive picture and are black; merge it with the other parts"
+        )
+    })
 }
 
 fn rejected_samples<'a>(films: impl IntoIterator<Item = &'a Film>) -> Option<String> {

@@ -131,9 +131,10 @@ impl Accumulation {
     }
 
     /// The error to be held against one that is asked for: the median error, or the bound of what most pixels have not seen
-    /// yet, as a share of their light, if that is more than was asked for.
+    /// yet, as a share of their light, if that is more than was asked for. `None` of a black picture, and with fewer than 16
+    /// samples in some pixel.
     fn error_against(&self, py: Python<'_>, asked: f64) -> Option<f64> {
-        py.detach(|| self.sums().film.error_against(asked))
+        py.detach(|| self.sums().film.believed_error_against(asked))
     }
 
     /// Memory that it takes, at most.

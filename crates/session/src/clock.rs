@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub(crate) struct Clock {
     start: Instant,
+    /// Since when samples are made, which may be later.
+    first_pass: Instant,
     /// Seconds of earlier runs that this one resumes.
     before: f64,
     /// Samples that were there at the start are not this run's work.
@@ -15,7 +17,13 @@ pub(crate) struct Clock {
 impl Clock {
     /// A clock for a picture that already holds `samples` a pixel, which took `before` seconds.
     pub fn start(before: f64, samples: u64) -> Self {
-        Self { start: Instant::now(), before, first: samples }
+        let start = Instant::now();
+        Self { start, first_pass: start, before, first: samples }
+    }
+
+    /// Counts what has passed so far to no sample.
+    pub fn begin_passes(&mut self) {
+        self.first_pass = Instant::now();
     }
 
     /// Seconds in all runs.
@@ -31,6 +39,6 @@ impl Clock {
     /// Seconds that a sample of the whole picture takes, once one has been made and the picture holds `samples`.
     pub fn pace(&self, samples: u64) -> Option<f64> {
         let made = samples.checked_sub(self.first).filter(|&made| made > 0)?;
-        Some(self.start.elapsed().as_secs_f64() / made as f64)
+        Some(self.first_pass.elapsed().as_secs_f64() / made as f64)
     }
 }

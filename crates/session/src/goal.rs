@@ -38,10 +38,6 @@ impl Goal {
 /// Samples of a pass at most. Passes are what a render can be stopped between.
 const LARGEST_PASS: u64 = 16;
 
-/// Samples that an error estimate needs before it is believed: with fewer, pixels whose few samples happen to agree
-/// pass for converged.
-const LEAST_SAMPLES_FOR_ERROR: u64 = 16;
-
 /// Which samples to render, in which passes.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -111,10 +107,8 @@ impl Plan {
     }
 
     fn error_is_reached(&self, pictures: &[Accumulation]) -> bool {
-        let is_below = |film: &Film, goal: f64| {
-            film.least_sample_count() >= LEAST_SAMPLES_FOR_ERROR
-                && film.error_against(goal).is_some_and(|error| error <= goal)
-        };
+        let is_below =
+            |film: &Film, goal: f64| film.believed_error_against(goal).is_some_and(|error| error <= goal);
         self.error.is_some_and(|goal| pictures.iter().all(|picture| is_below(&picture.film, goal)))
     }
 }

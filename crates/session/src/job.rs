@@ -137,10 +137,12 @@ impl Job {
         let [picture] = &mut self.pictures[..] else {
             return Err(SessionError::refuse_file(path, "an .acc file holds at most three bands"));
         };
-        if !are_alike(&saved, picture) {
+        let has_samples = saved.film.complete().count() > 0 || saved.film.open_start().is_some();
+        let is_otherwise = has_samples && saved.film.rates().is_some() != self.is_adaptive;
+        if is_otherwise || !are_alike(&saved, picture) {
             return Err(SessionError::refuse_file(
                 path,
-                "is of another scene, size, seed, integrator, sampler, estimators, layers or version; name another \
+                "is of another scene, size, seed, integrator, sampler, estimators, layers or version, or adaptive or not; name another \
                  --checkpoint",
             ));
         }
@@ -164,12 +166,13 @@ impl Job {
         let Some(first) = self.pictures.first() else { return Ok(Outcome::Complete) };
         let renderers: Vec<Renderer<'_>> =
             self.scenes.iter().map(|scene| Renderer::new(scene, self.options.integrator)).collect();
-        let clock = Clock::start(first.metadata.seconds, first.film.complete().count());
+        let mut clock = Clock::start(first.metadata.seconds, first.film.complete().count());
         if self.is_adaptive
-            && allot(&mut self.pictures, &renderers, &self.options, control)? == Outcome::Cancelled
+            && allot(&mut self.pictures, &renderers[0], &self.options, control)? == Outcome::Cancelled
         {
             return Ok(Outcome::Cancelled);
         }
+        clock.begin_passes();
         // Only what was resumed can hold more than was asked for now.
         let resumed = self.resumed.as_deref().unwrap_or(Path::new("the picture"));
         while let Some(pass) = plan.next_pass(&self.pictures, &clock) {
@@ -197,23 +200,21 @@ impl Job {
     }
 }
 
-/// Gives the pixels of pictures without samples different numbers of them, as pilots tell.
+/// Gives the pixels of a picture without samples different numbers of them, as a pilot of its first film tells.
 fn allot(
     pictures: &mut [Accumulation],
-    renderers: &[Renderer<'_>],
+    first: &Renderer<'_>,
     options: &RenderOptions,
     control: &Control,
 ) -> Result<Outcome, SessionError> {
     let is_empty = |film: &Film| film.complete().count() == 0 && film.open_start().is_none();
-    for (Accumulation { film, .. }, renderer) in pictures.iter_mut().zip(renderers) {
-        if film.rates().is_none() && is_empty(film) {
-            let rates = catch_unwind(AssertUnwindSafe(|| renderer.rates(film, options, control)));
-            match rates.map_err(|_| SessionError::Panicked)?? {
-                Some(rates) => film.set_rates(rates),
-                None => return Ok(Outcome::Cancelled),
-            }
-        }
+    if !pictures.iter().all(|picture| is_empty(&picture.film) && picture.film.rates().is_none()) {
+        return Ok(Outcome::Complete);
     }
+    let film = &pictures[0].film;
+    let rates = catch_unwind(AssertUnwindSafe(|| first.rates(film, options, control)));
+    let Some(rates) = rates.map_err(|_| SessionError::Panicked)?? else { return Ok(Outcome::Cancelled) };
+    pictures.iter_mut().for_each(|picture| picture.film.set_rates(rates.clone()));
     Ok(Outcome::Complete)
 }
 

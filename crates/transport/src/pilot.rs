@@ -13,7 +13,7 @@ const SAMPLES: u64 = 4;
 impl Renderer<'_> {
     /// How many samples each pixel of such a film is to get (see [`Rates`]); `None` if the render was cancelled.
     ///
-    /// It is a function of the scene, the integrator and the seed: all parts of a picture have the same. Its samples are
+    /// It is a function of the scene, the integrator, its estimators and the seed: all parts of a picture have the same. Its samples are
     /// independent of the picture's.
     ///
     /// # Errors

@@ -179,7 +179,7 @@ fn lacking(film: &Film, tiles: &[usize], end: u64) -> u64 {
     tiles.iter().map(|&tile| film.lacking(tile, end)).sum()
 }
 
-/// Numbers of the film's tiles, by block; where pixels have different numbers of samples, those first that take longest.
+/// Numbers of the film's tiles, by block; where pixels have different numbers of samples, those with most first.
 fn blocks(film: &Film, end: u64) -> Vec<Vec<usize>> {
     let columns = film.width().div_ceil(TILE_EDGE);
     let block_columns = columns.div_ceil(BLOCK_TILES) as usize;

@@ -142,7 +142,8 @@ class Accumulation:
         """Median over the pixels of standard error over mean of luminance."""
     def error_against(self, asked: float) -> float | None:
         """The error to be held against one that is asked for: the median error, or the bound of what most pixels have not seen
-        yet, as a share of their light, if that is more than was asked for.
+        yet, as a share of their light, if that is more than was asked for. `None` of a black picture, and with fewer than 16
+        samples in some pixel.
         """
     @property
     def nbytes(self) -> int:
