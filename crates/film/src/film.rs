@@ -184,9 +184,14 @@ impl Film {
     /// # Panics
     /// If the film holds samples, or the rates are of another size.
     pub fn set_rates(&mut self, rates: Rates) {
-        assert!(self.complete.count() == 0 && self.open.is_none(), "the film holds samples");
+        assert!(self.is_empty(), "the film holds samples");
         assert!(rates.as_steps().len() == self.sums.pixels.len(), "the rates are those of another film");
         self.rates = Some(rates);
+    }
+
+    /// Whether it holds no samples, and no pass was begun.
+    pub fn is_empty(&self) -> bool {
+        self.complete.count() == 0 && self.open.is_none()
     }
 
     /// How many samples each pixel gets for one of the others, if that differs.

@@ -137,8 +137,7 @@ impl Job {
         let [picture] = &mut self.pictures[..] else {
             return Err(SessionError::refuse_file(path, "an .acc file holds at most three bands"));
         };
-        let has_samples = saved.film.complete().count() > 0 || saved.film.open_start().is_some();
-        let is_otherwise = has_samples && saved.film.rates().is_some() != self.is_adaptive;
+        let is_otherwise = !saved.film.is_empty() && saved.film.rates().is_some() != self.is_adaptive;
         if is_otherwise || !are_alike(&saved, picture) {
             return Err(SessionError::refuse_file(
                 path,
@@ -207,8 +206,7 @@ fn allot(
     options: &RenderOptions,
     control: &Control,
 ) -> Result<Outcome, SessionError> {
-    let is_empty = |film: &Film| film.complete().count() == 0 && film.open_start().is_none();
-    if !pictures.iter().all(|picture| is_empty(&picture.film) && picture.film.rates().is_none()) {
+    if !pictures.iter().all(|picture| picture.film.is_empty() && picture.film.rates().is_none()) {
         return Ok(Outcome::Complete);
     }
     let film = &pictures[0].film;
