@@ -1,7 +1,7 @@
 //! Memory of brick grids built from real files; skipped where the folder of volumes is not there.
 
 use std::path::{Path, PathBuf};
-use tyndall_volumes::{BrickGrid, Grid, ReadRequest, Storage, read};
+use tyndall_volumes::{BrickGrid, Grid, GridValues, ReadRequest, Storage, read};
 
 fn grid(file: &str) -> Option<Grid> {
     let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/volumes");
@@ -23,6 +23,25 @@ fn memory_stays_near_the_bricks() {
             println!("{file} {storage:?}: {} bricks, {ratio:.3} times their values", bricks.brick_count());
             assert!(ratio < 1.5, "{file} {storage:?}: {ratio}");
         }
+    }
+}
+
+/// Also where bricks are ragged: in these files 62 %, 66 %, 77 % and 29 % of the voxels of bricks are active.
+#[test]
+fn bytes_take_little_more_than_one_an_active_voxel() {
+    for (file, most) in [
+        ("wdas_cloud_sixteenth.vdb", 1.3),
+        ("smoke1.vdb", 1.3),
+        ("nebula_density_nozip.nvdb", 1.3),
+        ("dragon.vdb", 2.0),
+    ] {
+        let Some(grid) = grid(file) else { return };
+        let GridValues::Float(tree) = &grid.values else { panic!("{file} holds no floats") };
+        let words = tree.leaves.iter().flat_map(|leaf| leaf.active);
+        let active: u64 = words.map(|word| u64::from(word.count_ones())).sum();
+        let bytes = BrickGrid::new(&grid, Storage::U8).unwrap().memory_bytes() as f64 / active as f64;
+        println!("{file}: {bytes:.3} bytes an active voxel");
+        assert!((0.8..most).contains(&bytes), "{file}: {bytes}");
     }
 }
 

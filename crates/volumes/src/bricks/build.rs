@@ -130,18 +130,19 @@ fn build<T: Scalar>(
     let mut bricks = Bricks::new(storage, tree.leaves.len(), range);
     let mut sources = Sources::new(background);
     for (leaf, values) in tree.leaves.iter().zip(tree.leaf_values.chunks_exact(LEAF_VOXELS)) {
-        let mut block = [0.0; LEAF_VOXELS];
-        for (to, &from) in block.iter_mut().zip(values) {
+        let mut brick = [0.0; LEAF_VOXELS];
+        for (to, &from) in brick.iter_mut().zip(values) {
             *to = finite(from);
         }
-        let source = if block.iter().all(|&v| v == block[0]) {
-            Source::Constant(block[0])
+        let source = if brick.iter().all(|&v| v == brick[0]) {
+            Source::Constant(brick[0])
         } else {
-            bricks.push(&block);
+            bricks.push(&brick);
             Source::Brick((bricks.count() - 1) as u32)
         };
         sources.leaves.insert(leaf.origin.map(|x| x >> 3), source);
     }
+    bricks.shrink_to_fit();
     for tile in &tree.tiles {
         sources.insert_tile(tile.origin, tile.log2_edge, finite(tile.value));
     }

@@ -1,12 +1,13 @@
 //! How the 512 values of each brick are kept: u8, f16 or f32.
 
 use super::bounds::Bounds;
+use super::bytes::U8Bricks;
 use crate::LEAF_VOXELS;
 
 /// The type that voxels are stored as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Storage {
-    /// One byte a voxel, with an offset and a step in each brick.
+    /// One byte a voxel at most, with an offset and a step in each brick.
     U8,
     /// Half precision, scaled by a power of two.
     F16,
@@ -15,10 +16,10 @@ pub enum Storage {
 }
 
 impl Storage {
-    /// Memory of a brick; those of halves may turn out to be of f32, where values are beyond what halves reach.
+    /// Memory of a brick at most; those of halves may turn out to be of f32, where values are beyond what halves reach.
     pub(super) fn brick_bytes(self) -> usize {
         match self {
-            Self::U8 => LEAF_VOXELS + size_of::<[f32; 2]>(),
+            Self::U8 => U8Bricks::MOST_BRICK_BYTES,
             Self::F16 => 2 * LEAF_VOXELS,
             Self::F32 => 4 * LEAF_VOXELS,
         }
@@ -34,20 +35,12 @@ pub trait BrickValues: Sync {
 /// The bricks of a grid, in one of the storages.
 #[derive(Debug, Clone)]
 pub enum Bricks {
-    /// One byte a voxel.
+    /// One byte a voxel at most.
     U8(U8Bricks),
     /// Half precision.
     F16(F16Bricks),
     /// Single precision.
     F32(F32Bricks),
-}
-
-/// Bricks of bytes: value = offset + step·code.
-#[derive(Debug, Clone)]
-pub struct U8Bricks {
-    codes: Vec<u8>,
-    /// (offset, step) of each brick.
-    affine: Vec<[f32; 2]>,
 }
 
 /// Bricks of IEEE halves; value = half·scale with `scale` a power of two.
@@ -62,14 +55,6 @@ pub struct F16Bricks {
 #[derive(Debug, Clone)]
 pub struct F32Bricks {
     values: Vec<f32>,
-}
-
-impl BrickValues for U8Bricks {
-    #[inline(always)]
-    fn value(&self, brick: u32, offset: u32) -> f32 {
-        let [least, step] = self.affine[brick as usize];
-        least + step * f32::from(self.codes[brick as usize * LEAF_VOXELS + offset as usize])
-    }
 }
 
 impl BrickValues for F16Bricks {
@@ -98,10 +83,7 @@ impl Bricks {
     /// what scaled halves reach and are kept as f32.
     pub(super) fn new(storage: Storage, count: usize, bounds: Bounds) -> Bricks {
         match storage {
-            Storage::U8 => Bricks::U8(U8Bricks {
-                codes: Vec::with_capacity(count * LEAF_VOXELS),
-                affine: Vec::with_capacity(count),
-            }),
+            Storage::U8 => Bricks::U8(U8Bricks::with_capacity(count)),
             Storage::F16 if largest_magnitude(bounds) < HALF_LIMIT => Bricks::F16(F16Bricks {
                 halves: Vec::with_capacity(count * LEAF_VOXELS),
                 factor: half_factor(bounds),
@@ -115,17 +97,7 @@ impl Bricks {
     /// Appends a brick of 512 finite values.
     pub(super) fn push(&mut self, values: &[f32; LEAF_VOXELS]) {
         match self {
-            Bricks::U8(bricks) => {
-                let least = values.iter().copied().fold(f32::INFINITY, f32::min);
-                let greatest = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-                // Halved first: the difference of two finite values may overflow.
-                let step = (greatest / 255.0) - (least / 255.0);
-                let code = |v: f32| {
-                    if step > 0.0 { ((v - least) / step).round().clamp(0.0, 255.0) as u8 } else { 0 }
-                };
-                bricks.codes.extend(values.iter().map(|&v| code(v)));
-                bricks.affine.push([least, step]);
-            }
+            Bricks::U8(bricks) => bricks.push(values),
             Bricks::F16(bricks) => {
                 let inverse_scale = libm::ldexp(1.0, 112) / f64::from(bricks.factor);
                 let halves =
@@ -133,6 +105,15 @@ impl Bricks {
                 bricks.halves.extend(halves);
             }
             Bricks::F32(bricks) => bricks.values.extend(values),
+        }
+    }
+
+    /// Gives back what was set aside for bricks that have not come, and for blocks of them that are left out.
+    pub(super) fn shrink_to_fit(&mut self) {
+        match self {
+            Bricks::U8(bricks) => bricks.shrink_to_fit(),
+            Bricks::F16(bricks) => bricks.halves.shrink_to_fit(),
+            Bricks::F32(bricks) => bricks.values.shrink_to_fit(),
         }
     }
 
@@ -148,19 +129,18 @@ impl Bricks {
     /// Number of bricks.
     pub fn count(&self) -> usize {
         match self {
-            Bricks::U8(bricks) => bricks.affine.len(),
+            Bricks::U8(bricks) => bricks.count(),
             Bricks::F16(bricks) => bricks.halves.len() / LEAF_VOXELS,
             Bricks::F32(bricks) => bricks.values.len() / LEAF_VOXELS,
         }
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
-        let storage = match self {
-            Bricks::U8(_) => Storage::U8,
-            Bricks::F16(_) => Storage::F16,
-            Bricks::F32(_) => Storage::F32,
-        };
-        self.count() * storage.brick_bytes()
+        match self {
+            Bricks::U8(bricks) => bricks.memory_bytes(),
+            Bricks::F16(bricks) => size_of_val(&bricks.halves[..]),
+            Bricks::F32(bricks) => size_of_val(&bricks.values[..]),
+        }
     }
 }
 
