@@ -1,7 +1,7 @@
 //! What a render does, counted if the crate is built with the feature `counters`.
 //!
-//! Every thread counts for itself, in plain numbers of its own, which are added to those of the render after each block
-//! of pixels. Without the feature counting compiles to nothing. The engine with rays in a pool counts everything,
+//! Every thread counts for itself, in plain numbers of its own, which are added to those of the render after each pass.
+//! Without the feature counting compiles to nothing. The engine with rays in a pool counts everything,
 //! the others what they share with it.
 //!
 //! A round of the march takes each ray of the pool through one cell or to a tentative collision; so the lane occupancy is

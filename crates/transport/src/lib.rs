@@ -8,6 +8,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod along_ray;
+mod beginning;
 pub mod counters;
 pub mod distance;
 mod emission;
@@ -34,6 +35,7 @@ pub mod transmittance;
 pub mod walk;
 mod way;
 mod wide;
+mod work;
 
 pub use along_ray::{AlongRay, Lookups};
 pub use distance::{DistanceSampler, Flight, sample_distance};

@@ -8,19 +8,19 @@ use std::sync::OnceLock;
 
 /// A task that gains from wide vectors. `run` is to be inlined, down to its loops.
 pub(crate) trait Task {
-    /// Does it; `false` if it was cancelled.
-    fn run(self) -> bool;
+    /// Does it.
+    fn run(self);
 }
 
 /// Does the task with AVX2 where the processor has it.
-pub(crate) fn run<T: Task>(task: T) -> bool {
+pub(crate) fn run<T: Task>(task: T) {
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
         // SAFETY: the processor has the features, as just asked.
         #[allow(unsafe_code)]
         return unsafe { run_avx2(task) };
     }
-    task.run()
+    task.run();
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -34,6 +34,6 @@ fn has_avx2() -> bool {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx2<T: Task>(task: T) -> bool {
-    task.run()
+fn run_avx2<T: Task>(task: T) {
+    task.run();
 }

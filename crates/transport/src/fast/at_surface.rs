@@ -10,7 +10,7 @@ use crate::shadow_catcher;
 use crate::surface_vertex::SurfaceVertex;
 use glam::Vec3;
 
-impl Engine<'_> {
+impl Engine<'_, '_> {
     /// Finds the surface at which the path's ray ends; its distance.
     #[inline(always)]
     pub(super) fn look_ahead(&mut self, slot: usize) -> f32 {

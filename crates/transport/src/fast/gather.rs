@@ -76,7 +76,7 @@ pub(super) fn pays(scene: &Scene, volumes: &[FastVolume], cache: Option<&LightCa
     matches!(volumes, [volume] if is_grid(volume)) && !catches && (is_thin || branches > 1)
 }
 
-impl Engine<'_> {
+impl Engine<'_, '_> {
     /// The ray has come to a tentative collision; whether it goes on from there.
     #[inline(always)]
     pub(super) fn gather_at(&mut self, slot: usize) -> bool {

@@ -24,11 +24,10 @@ mod pool;
 mod sided;
 mod split;
 mod volume;
-mod work;
 
 pub(crate) use volume::FastScene;
-pub(crate) use work::Work;
 
+use crate::beginning::Beginning;
 use crate::counters::{self, Event};
 use crate::emission::{path_weight, weighted_emission_along};
 use crate::first_draws::FirstDraws;
@@ -38,45 +37,35 @@ use crate::render::{RenderOptions, effort};
 use crate::roulette::survival;
 use crate::way::{Span, is_plain};
 use crate::wide;
+use crate::work::{Pixel, Work};
 use glam::{DVec3, Vec3};
 use march::List;
 use next_event::{choose_correction, choose_direct};
-pub(crate) use pool::Pixel;
 use pool::{GATHERS, OWN, POOL, Path, Rays, SHADOW};
 use sided::Sided;
-use std::sync::atomic::{AtomicBool, Ordering};
-use tyndall_film::{FilmTile, Sample};
+use tyndall_film::Sample;
 use tyndall_lanes::Random;
 use volume::Kind;
 
 /// Rounds between two looks at whether the render was cancelled.
 const ROUNDS_BETWEEN_LOOKS: u32 = 256;
 
-/// Renders all samples of `tiles`; `false` if `cancel` was set before they were complete.
-pub(crate) fn render_tiles(
-    scene: &FastScene,
-    tiles: &mut [FilmTile],
-    options: &RenderOptions,
-    cancel: &AtomicBool,
-) -> bool {
+/// Renders all samples that there are for this thread, unless the render is cancelled.
+pub(crate) fn render(scene: &FastScene, work: Work, options: &RenderOptions) {
     match &scene.homogeneous {
-        Some(homogeneous) => wide::run(homogeneous::Paths { homogeneous, tiles, options, cancel }),
-        None => wide::run(Engine::new(scene, tiles, options, cancel)),
+        Some(homogeneous) => wide::run(homogeneous::Paths { homogeneous, work, options }),
+        None => wide::run(Engine::new(scene, work, options)),
     }
 }
 
-struct Engine<'a> {
+struct Engine<'a, 'f> {
     scene: &'a FastScene<'a>,
-    tiles: &'a mut [FilmTile],
+    work: Work<'a, 'f>,
     options: &'a RenderOptions,
-    cancel: &'a AtomicBool,
-    film_width: u64,
-    has_lens: bool,
     rays: Box<Rays>,
     paths: Vec<Path>,
     /// What surfaces need of each path, if there are any.
     sided: Vec<Sided>,
-    work: Work,
     active: usize,
     is_cancelled: bool,
 }
@@ -97,9 +86,9 @@ enum Next {
     Record,
 }
 
-impl wide::Task for Engine<'_> {
+impl wide::Task for Engine<'_, '_> {
     #[inline(always)]
-    fn run(mut self) -> bool {
+    fn run(mut self) {
         self.active = POOL;
         for slot in 0..POOL {
             self.proceed(slot, Next::Start);
@@ -131,33 +120,21 @@ impl wide::Task for Engine<'_> {
                 self.proceed(slot, next);
             }
             round = round.wrapping_add(1);
-            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && self.cancel.load(Ordering::Relaxed) {
-                return false;
-            }
+            self.is_cancelled |= round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && self.work.is_cancelled();
         }
-        !self.is_cancelled
     }
 }
 
-impl<'a> Engine<'a> {
+impl<'a, 'f> Engine<'a, 'f> {
     #[inline(always)]
-    fn new(
-        scene: &'a FastScene<'a>,
-        tiles: &'a mut [FilmTile],
-        options: &'a RenderOptions,
-        cancel: &'a AtomicBool,
-    ) -> Engine<'a> {
+    fn new(scene: &'a FastScene<'a>, work: Work<'a, 'f>, options: &'a RenderOptions) -> Self {
         Engine {
             scene,
-            tiles,
+            work,
             options,
-            cancel,
-            has_lens: scene.scene.camera.has_lens(),
-            film_width: u64::from(scene.scene.resolution[0]),
             rays: Rays::new(),
             paths: vec![Path::default(); POOL],
             sided: if scene.is_sided { vec![Sided::new(is_plain(scene.scene)); POOL] } else { Vec::new() },
-            work: Work::default(),
             active: 0,
             is_cancelled: false,
         }
@@ -228,20 +205,15 @@ impl<'a> Engine<'a> {
     /// whole paths go by in a round.
     #[inline(always)]
     fn next_sample(&mut self) -> Option<(Pixel, u64)> {
-        self.is_cancelled |= self.cancel.load(Ordering::Relaxed);
-        if self.is_cancelled { None } else { self.work.next(self.tiles) }
+        self.is_cancelled |= self.work.is_cancelled();
+        if self.is_cancelled { None } else { self.work.next() }
     }
 
     #[inline(always)]
     fn start(&mut self, slot: usize, pixel: Pixel, sample: u64) -> Next {
-        let number = u64::from(pixel.y) * self.film_width + u64::from(pixel.x);
-        let RenderOptions { sampler, seed, .. } = *self.options;
-        let begun = Random::new(seed, number, sample);
-        let mut random = begun;
-        let draws = FirstDraws::new(sampler, seed, number, sample);
-        let film_u = draws.film(&mut random);
-        let lens_u = if self.has_lens { draws.lens(&mut random) } else { [0.5; 2] };
-        let ray = self.scene.scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
+        let scene = self.scene.scene;
+        let Beginning { begun, random, draws, ray } =
+            Beginning::new(scene, self.options, (pixel, sample), scene.camera.has_lens());
         self.rays.random[slot] = random;
         self.paths[slot] = Path {
             pixel,
@@ -492,7 +464,7 @@ impl<'a> Engine<'a> {
             ..Sample::default()
         };
         let sample = FirstMet::describe(path.first, sample);
-        self.tiles[path.pixel.tile as usize].add(path.pixel.x, path.pixel.y, &sample);
+        self.work.add(path.pixel, &sample);
     }
 }
 

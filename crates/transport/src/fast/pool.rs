@@ -10,6 +10,7 @@ use tyndall_lanes::Random;
 use crate::first_draws::FirstDraws;
 use crate::found_light::Turned;
 use crate::path_layers::FirstMet;
+use crate::work::Pixel;
 
 use super::gather::Gathered;
 use super::split::Fork;
@@ -169,12 +170,4 @@ impl Path {
             _ => self.multiple += radiance,
         }
     }
-}
-
-/// A pixel of the film and the number of its tile among those that are rendered.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Pixel {
-    pub tile: u32,
-    pub x: u32,
-    pub y: u32,
 }

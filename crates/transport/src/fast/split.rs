@@ -56,7 +56,7 @@ pub(super) fn branches(scene: &Scene) -> u32 {
     if glows && scene.volumes.iter().all(absorbs) { BRANCHES } else { 1 }
 }
 
-impl Engine<'_> {
+impl Engine<'_, '_> {
     /// Splits the path before it goes on from its collision in the volume of this number, or from a surface.
     #[inline(always)]
     pub(super) fn split(&mut self, slot: usize, volume: usize, vertex: Option<&SurfaceVertex>) {

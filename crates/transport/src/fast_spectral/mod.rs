@@ -25,43 +25,34 @@ mod turn;
 mod vertex;
 mod way_out;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use glam::Vec3;
-use tyndall_film::{FilmTile, Sample};
+use tyndall_film::Sample;
 use tyndall_lanes::Random;
 
 use self::pool::{Lanes, OpenSample, OpenSamples, PARTS, POOL, STRATA};
 use self::scene::CHANNELS;
 use self::vertex::List;
-use crate::fast::{Pixel, Work};
-use crate::first_draws::FirstDraws;
+use crate::beginning::Beginning;
 use crate::render::{RenderOptions, effort};
 use crate::wide;
+use crate::work::{Pixel, Work};
 
 pub(crate) use self::scene::FastSpectralScene;
 
 /// Rounds between two looks at whether the render was cancelled.
 const ROUNDS_BETWEEN_LOOKS: u32 = 256;
 
-/// Renders all samples of `tiles`; `false` if `cancel` was set before they were complete.
-pub(crate) fn render_tiles(
-    scene: &FastSpectralScene,
-    tiles: &mut [FilmTile],
-    options: &RenderOptions,
-    cancel: &AtomicBool,
-) -> bool {
-    wide::run(Engine::new(scene, tiles, options, cancel))
+/// Renders all samples that there are for this thread, unless the render is cancelled.
+pub(crate) fn render(scene: &FastSpectralScene, work: Work, options: &RenderOptions) {
+    wide::run(Engine::new(scene, work, options));
 }
 
-struct Engine<'a> {
+struct Engine<'a, 'f> {
     scene: &'a FastSpectralScene<'a>,
-    tiles: &'a mut [FilmTile],
+    work: Work<'a, 'f>,
     options: &'a RenderOptions,
-    cancel: &'a AtomicBool,
     lanes: Box<Lanes>,
     open: OpenSamples,
-    work: Work,
     /// The sample whose paths start next.
     starting: Option<Starting>,
     active: usize,
@@ -84,9 +75,9 @@ struct Starting {
     density: [f32; CHANNELS],
 }
 
-impl wide::Task for Engine<'_> {
+impl wide::Task for Engine<'_, '_> {
     #[inline(always)]
-    fn run(mut self) -> bool {
+    fn run(mut self) {
         for slot in 0..POOL {
             self.fill(slot);
         }
@@ -99,23 +90,17 @@ impl wide::Task for Engine<'_> {
                 self.fill(usize::from(slot));
             }
             round = round.wrapping_add(1);
-            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && self.cancel.load(Ordering::Relaxed) {
-                return false;
+            if round.is_multiple_of(ROUNDS_BETWEEN_LOOKS) && self.work.is_cancelled() {
+                return;
             }
         }
-        true
     }
 }
 
-impl<'a> Engine<'a> {
-    fn new(
-        scene: &'a FastSpectralScene<'a>,
-        tiles: &'a mut [FilmTile],
-        options: &'a RenderOptions,
-        cancel: &'a AtomicBool,
-    ) -> Self {
-        let (lanes, open, work) = (Lanes::new(), OpenSamples::new(), Work::default());
-        Self { scene, tiles, options, cancel, lanes, open, work, starting: None, active: 0 }
+impl<'a, 'f> Engine<'a, 'f> {
+    fn new(scene: &'a FastSpectralScene<'a>, work: Work<'a, 'f>, options: &'a RenderOptions) -> Self {
+        let (lanes, open) = (Lanes::new(), OpenSamples::new());
+        Self { scene, work, options, lanes, open, starting: None, active: 0 }
     }
 
     /// Gives the place to the next path there is.
@@ -125,7 +110,11 @@ impl<'a> Engine<'a> {
                 Some(starting) if starting.part < PARTS => break starting,
                 _ => {}
             }
-            let Some((pixel, sample)) = self.work.next(self.tiles) else { return };
+            // Asked for each sample: rays that miss the medium go by without a round.
+            if self.work.is_cancelled() {
+                return;
+            }
+            let Some((pixel, sample)) = self.work.next() else { return };
             self.start(pixel, sample);
         };
         let (channel, stratum) = (starting.part / STRATA, starting.part % STRATA);
@@ -156,13 +145,8 @@ impl<'a> Engine<'a> {
     /// Draws the camera's ray of a sample. What it sees without scattering is found at once.
     fn start(&mut self, pixel: Pixel, sample: u64) {
         let scene = self.scene;
-        let number = u64::from(pixel.y) * u64::from(scene.scene.resolution[0]) + u64::from(pixel.x);
-        let (seed, sampler) = (self.options.seed, self.options.sampler);
-        let mut random = Random::new(seed, number, sample);
-        let draws = FirstDraws::new(sampler, seed, number, sample);
-        let film_u = draws.film(&mut random);
-        let lens_u = draws.lens(&mut random);
-        let ray = scene.scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
+        let Beginning { mut random, ray, .. } =
+            Beginning::new(scene.scene, self.options, (pixel, sample), true);
         let within = scene.volume.interval(&scene.volume.local_ray(&ray), (0.0, f64::INFINITY));
         let Some((enter, leave)) = within else {
             self.record(OpenSample { pixel, background: scene.even, ..OpenSample::default() });
@@ -239,8 +223,7 @@ impl<'a> Engine<'a> {
             effort: sample.effort,
             ..Sample::default()
         };
-        let pixel = sample.pixel;
-        self.tiles[pixel.tile as usize].add(pixel.x, pixel.y, &described);
+        self.work.add(sample.pixel, &described);
     }
 }
 

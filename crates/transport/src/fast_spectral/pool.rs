@@ -3,7 +3,7 @@
 use tyndall_lanes::Random;
 
 use super::scene::CHANNELS;
-use crate::fast::Pixel;
+use crate::work::Pixel;
 
 /// Paths in flight on a thread: few enough that their state, and what is computed of it on the way, stays in a core's
 /// nearest caches.

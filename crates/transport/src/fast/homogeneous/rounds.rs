@@ -6,8 +6,7 @@
 //! meet, and what light there is on their way. The paths do not touch each other, so that it does not matter which are together.
 
 use glam::{DVec3, Vec3};
-use std::sync::atomic::{AtomicBool, Ordering};
-use tyndall_film::{FilmTile, Sample};
+use tyndall_film::Sample;
 use tyndall_lanes::Random;
 use tyndall_scene::Ray;
 use tyndall_scene::surface::{LANES, RayGroup, Surfaces};
@@ -15,11 +14,12 @@ use tyndall_scene::surface::{LANES, RayGroup, Surfaces};
 use super::lit_way::{LitWays, Unshadowed};
 use super::stretch::Stretch;
 use super::{BRANCHES, FIRST, Homogeneous, LATER, Path, Reached};
-use crate::fast::{Pixel, Work};
+use crate::beginning::Beginning;
 use crate::first_draws::FirstDraws;
 use crate::path_layers::PathLayers;
 use crate::render::{RenderOptions, effort};
 use crate::wide;
+use crate::work::{Pixel, Work};
 
 /// Paths in flight on a thread: whole groups of [`LANES`] and [`WAYS`].
 const TOGETHER: usize = 32;
@@ -28,12 +28,11 @@ const _: () = assert!(TOGETHER.is_multiple_of(LANES) && TOGETHER.is_multiple_of(
 /// Ways on which light is looked for side by side. Loops over less the compiler unrolls, and makes no vector code of them.
 const WAYS: usize = 16;
 
-/// All samples of some tiles.
-pub(in crate::fast) struct Paths<'a> {
+/// All samples that there are for a thread.
+pub(in crate::fast) struct Paths<'a, 'f> {
     pub homogeneous: &'a Homogeneous<'a>,
-    pub tiles: &'a mut [FilmTile],
+    pub work: Work<'a, 'f>,
     pub options: &'a RenderOptions,
-    pub cancel: &'a AtomicBool,
 }
 
 /// A sample under way.
@@ -54,15 +53,14 @@ struct Sampling {
     way: Reached,
 }
 
-impl wide::Task for Paths<'_> {
+impl wide::Task for Paths<'_, '_> {
     #[inline(always)]
-    fn run(self) -> bool {
-        let Paths { homogeneous, tiles, options, cancel } = self;
+    fn run(self) {
+        let Paths { homogeneous, mut work, options } = self;
         let surfaces = &homogeneous.scene.surfaces;
-        let mut work = Work::default();
         let mut samplings: Vec<Sampling> = Vec::with_capacity(TOGETHER);
         while samplings.len() < TOGETHER
-            && let Some((pixel, sample)) = work.next(tiles)
+            && let Some((pixel, sample)) = work.next()
         {
             samplings.push(Sampling::nothing());
             if let Some(sampling) = samplings.last_mut() {
@@ -70,22 +68,22 @@ impl wide::Task for Paths<'_> {
             }
         }
         while !samplings.is_empty() {
-            if cancel.load(Ordering::Relaxed) {
-                return false;
+            if work.is_cancelled() {
+                return;
             }
             for at in (0..samplings.len()).rev() {
                 let sampling = &mut samplings[at];
                 while !homogeneous.go_on(sampling) {
                     // Asked for each sample: where their paths end at once, all of them go by in a round.
-                    if cancel.load(Ordering::Relaxed) {
-                        return false;
+                    if work.is_cancelled() {
+                        return;
                     }
                     let pixel = sampling.pixel;
                     let layers = std::mem::take(&mut sampling.layers);
                     let sample = layers.into_sample(|colour| colour.as_dvec3());
                     let effort = effort(&sampling.begun, &sampling.random);
-                    tiles[pixel.tile as usize].add(pixel.x, pixel.y, &Sample { effort, ..sample });
-                    let Some((pixel, sample)) = work.next(tiles) else {
+                    work.add(pixel, &Sample { effort, ..sample });
+                    let Some((pixel, sample)) = work.next() else {
                         samplings.swap_remove(at);
                         break;
                     };
@@ -133,7 +131,6 @@ impl wide::Task for Paths<'_> {
             }
             shadows.add(surfaces, &mut samplings);
         }
-        true
     }
 }
 
@@ -200,13 +197,8 @@ impl Homogeneous<'_> {
     #[inline(always)]
     fn start(&self, sampling: &mut Sampling, pixel: Pixel, sample: u64, options: &RenderOptions) {
         let scene = self.scene;
-        let number = u64::from(pixel.y) * u64::from(scene.resolution[0]) + u64::from(pixel.x);
-        let begun = Random::new(options.seed, number, sample);
-        let mut random = begun;
-        let draws = FirstDraws::new(options.sampler, options.seed, number, sample);
-        let film_u = draws.film(&mut random);
-        let lens_u = draws.lens(&mut random);
-        let ray = scene.camera.ray([pixel.x, pixel.y], film_u, lens_u);
+        let Beginning { begun, mut random, draws, ray } =
+            Beginning::new(scene, options, (pixel, sample), true);
         let path = Path::from_camera(ray, draws.collision(&mut random));
         let Sampling { layers, first: (_, way), .. } = sampling;
         let met = scene.surfaces.meet(&path.ray, f64::INFINITY);
