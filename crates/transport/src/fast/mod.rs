@@ -87,6 +87,9 @@ enum Next {
 }
 
 impl wide::Task for Engine<'_, '_> {
+    /// It waits for cells and voxels: 0.97 to 1.0 of the speed.
+    const GAINS_FROM_AVX512: bool = false;
+
     #[inline(always)]
     fn run(mut self) {
         self.active = POOL;

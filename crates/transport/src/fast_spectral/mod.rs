@@ -76,6 +76,8 @@ struct Starting {
 }
 
 impl wide::Task for Engine<'_, '_> {
+    const GAINS_FROM_AVX512: bool = true;
+
     #[inline(always)]
     fn run(mut self) {
         for slot in 0..POOL {

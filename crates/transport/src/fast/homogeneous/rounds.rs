@@ -54,6 +54,8 @@ struct Sampling {
 }
 
 impl wide::Task for Paths<'_, '_> {
+    const GAINS_FROM_AVX512: bool = true;
+
     #[inline(always)]
     fn run(self) {
         let Paths { homogeneous, mut work, options } = self;
