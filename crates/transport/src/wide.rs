@@ -47,7 +47,12 @@ fn vectors() -> Vectors {
     static VECTORS: OnceLock<Vectors> = OnceLock::new();
     *VECTORS.get_or_init(|| {
         let limit = std::env::var("TYNDALL_VECTORS").unwrap_or_default();
-        let has_avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2");
+        // All that the functions below are compiled for.
+        let has_avx2 = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
         let has_avx512 = has_avx2
             && is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512bw")
