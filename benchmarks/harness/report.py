@@ -7,6 +7,9 @@ from . import estimation
 # Probability that any of all the tests of means in a run fails although all means agree.
 LEVEL_OF_ALL = 0.01
 
+# Width of a column of figures with intervals: the longest, 1.23e+03 [1.23e+03, 1.23e+03], and two spaces.
+WITH_INTERVAL = 31
+
 
 def group(measurements):
     """Measurements that did not fail, by (scene, renderer), each sorted into its numbers of samples."""
@@ -75,7 +78,7 @@ def table(all_rows, labels, clock):
     """The rows as text."""
     lines = [
         f"{'':6}{'renderer':18}{'spp':>5}{'seeds':>6}{clock + ' s':>9}{'relMSE':>11}{'(trimmed)':>12}"
-        f"{'efficiency [95 %]':>28}{'Tyndall / it [95 %]':>28}   offset of the mean"
+        f"{'efficiency [95 %]':>{WITH_INTERVAL}}{'Tyndall / it [95 %]':>{WITH_INTERVAL}}   offset of the mean"
     ]
     for row in all_rows:
         offset = ",".join(f"{100 * value:+.2f}" for value in row["offset"])
@@ -84,8 +87,8 @@ def table(all_rows, labels, clock):
         ratio = row["ratio"] if row["renderer"] != "tyndall" else None
         lines.append(
             f"{row['scene']:6}{labels[row['renderer']]:18}{row['spp']:5}{row['seeds']:6}{row['seconds']:9.3g}"
-            f"{row['relmse']:11.3e}{row['trimmed']:12.3e}{with_interval(row['efficiency']):>28}"
-            f"{with_interval(ratio):>28}   {offset} %{verdict}{odd}"
+            f"{row['relmse']:11.3e}{row['trimmed']:12.3e}{with_interval(row['efficiency']):>{WITH_INTERVAL}}"
+            f"{with_interval(ratio):>{WITH_INTERVAL}}   {offset} %{verdict}{odd}"
         )
     return "\n".join(lines)
 
